@@ -9,6 +9,7 @@ use num_traits::FromPrimitive;
 use vehicle::VehicleSettings;
 use vehicle::identity::Identity;
 use vehicle::parameters::Speed;
+use vehicle::plan::{FaultCode, MissionItem, PlanKind, check, frame};
 
 const UNSUPPORTED: u8 = 3;
 const FAILED: u8 = 4;
@@ -105,4 +106,28 @@ fn the_table_has_what_every_client_needs() {
     assert_eq!((row(22).here, row(22).px4, row(22).ardupilot), (both, both, both), "takeoff");
     assert_eq!(row(16).here, Carried { command: false, item: true }, "waypoint");
     assert_eq!(row(400).here, Carried { command: true, item: false }, "arming");
+}
+
+/// What the table calls an item is taken in a mission, as far as its parameters are; nothing else is known there.
+#[test]
+fn items_are_known_as_the_table_says() {
+    let site = vehicle(Identity::ArduPilot).vehicle().site();
+    let unsupported = |number: u16| {
+        let item = MissionItem {
+            frame: frame::GLOBAL_RELATIVE_INT,
+            command: number,
+            parameters: [0.0; 4],
+            position: [47.0, 8.0, 10.0],
+            autocontinue: true,
+        };
+        let kinds = [PlanKind::Mission, PlanKind::Fence, PlanKind::Rally];
+        // The first item of ArduPilot's missions is home.
+        let refused = |kind| {
+            check::item(kind, 1, &item, &site).is_err_and(|fault| fault.code == FaultCode::Unsupported)
+        };
+        kinds.into_iter().all(refused)
+    };
+    let wrong: Vec<_> =
+        commands().into_iter().filter(|row| row.here.item == unsupported(row.number)).collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
 }

@@ -111,9 +111,4 @@ impl Mode {
             _ => Needs::Place,
         }
     }
-
-    /// Whether it ends on the ground: then it is not one to be armed in.
-    pub fn ends_on_the_ground(self) -> bool {
-        matches!(self, Self::Land | Self::Return | Self::SmartReturn | Self::Takeoff | Self::Mission)
-    }
 }

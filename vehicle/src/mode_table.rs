@@ -112,6 +112,20 @@ impl Identity {
     pub fn first_mode(self) -> Mode {
         if self.is_ardupilot() { Mode::Position } else { Mode::Hold }
     }
+
+    /// The mode of a vehicle whose rotors have stopped in a mode. PX4 leaves what ends on the ground; ArduPilot stays in it until it is
+    /// told another, and its takeoff is a part of the guided mode.
+    pub fn mode_after_flight(self, mode: Mode) -> Mode {
+        match mode {
+            Mode::Takeoff if self.is_ardupilot() => Mode::Offboard,
+            Mode::Land | Mode::Return | Mode::SmartReturn | Mode::Takeoff | Mode::Mission
+                if !self.is_ardupilot() =>
+            {
+                self.first_mode()
+            }
+            mode => mode,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -132,6 +146,17 @@ mod tests {
         assert_eq!(Identity::Px4.custom_mode(Mode::Offboard), 393_216);
         assert_eq!(Identity::Px4.mode(9 << 16), None);
         assert_eq!(Identity::ArduPilot.mode(15), None, "there is no automatic tuning");
+    }
+
+    /// ArduCopter's heartbeat shows Land, RTL and Auto after the landing, too; its clients choose the next mode.
+    #[test]
+    fn ardupilot_stays_in_the_mode_in_which_it_has_landed() {
+        for mode in [Mode::Land, Mode::Return, Mode::SmartReturn, Mode::Mission, Mode::Stabilize] {
+            assert_eq!(Identity::ArduPilot.mode_after_flight(mode), mode);
+            let px4 = Identity::Px4.mode_after_flight(mode);
+            assert_eq!(px4, if mode == Mode::Stabilize { mode } else { Mode::Hold });
+        }
+        assert_eq!(Identity::ArduPilot.mode_after_flight(Mode::Takeoff), Mode::Offboard);
     }
 
     #[test]

@@ -171,10 +171,13 @@ fn arm(context: &mut Context, command: &Command) -> Result<(), Refusal> {
 fn switch_fence(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let number = command.parameter(1);
     let is_ardupilot = context.vehicle.identity().is_ardupilot();
-    let known = FenceSwitch::of_number(number);
+    // PX4's is switched as a whole.
+    let parts = if is_ardupilot { Some(command.parameter(2)).filter(|parts| !parts.is_nan()) } else { None };
+    let known = FenceSwitch::of_numbers(number, parts.unwrap_or(0.0));
     // PX4's fence has no floor.
     let Some(switch) = known.filter(|switch| is_ardupilot || *switch != FenceSwitch::FloorOff) else {
-        let floor = if is_ardupilot { ", 2 disables its floor" } else { "" };
+        let floor =
+            if is_ardupilot { ", 2 disables its floor; parameter 2: parts as in FENCE_TYPE" } else { "" };
         return Err(Refusal::denied(format!(
             "Invalid value {number}: 1 enables the fence, 0 disables it{floor}"
         )));

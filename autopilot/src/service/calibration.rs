@@ -20,11 +20,16 @@ const STEPS: u64 = 5;
 const STILL_RAD_S: f64 = 0.1;
 const STILL_M_S: f64 = 0.1;
 
+/// The radio: a ground station watches its pulses and sets parameters, and the vehicle heeds neither sticks nor switches until a command
+/// with nothing to calibrate ends that.
+const RADIO: &str = "radio";
 /// Parameters of the command, and what they calibrate.
-const UNITS: [(usize, f64, &str); 6] = [
+const UNITS: [(usize, f64, &str); 8] = [
     (1, 1.0, "gyro"),
     (2, 1.0, "mag"),
     (3, 1.0, "baro"),
+    (4, 1.0, RADIO),
+    (4, 2.0, RADIO),
     (5, 1.0, "accel"),
     (5, 2.0, "level"),
     // ArduPilot's simple calibration, on level ground.
@@ -79,6 +84,9 @@ impl Service for Calibrations {
         let unit = match unit(command) {
             Ok(None) => {
                 self.end(context);
+                if context.vehicle.calibrate_radio(false) {
+                    say(context, Severity::Info, "calibration done: radio");
+                }
                 return Ok(Progress::Done);
             }
             Ok(Some(unit)) => Ok(unit),
@@ -92,6 +100,15 @@ impl Service for Calibrations {
             return Err(Refusal::later("another calibration is running"));
         }
         match unit.and_then(|unit| may_begin(&context.vehicle).map(|()| unit)) {
+            Ok(RADIO) => {
+                context.vehicle.calibrate_radio(true);
+                say(
+                    context,
+                    Severity::Info,
+                    "calibration started: radio; sticks and switches are not heeded",
+                );
+                Ok(Progress::Done)
+            }
             Ok(unit) => {
                 if context.identity().is_ardupilot() {
                     say(context, Severity::Info, &format!("calibration done: {unit}"));

@@ -5,13 +5,16 @@ use std::collections::VecDeque;
 
 use vehicle::Severity;
 
-use super::{Service, heartbeat};
+use super::{CommandEntry, Outcome, Progress, Service, heartbeat};
+use crate::codec::Command;
 use crate::context::Context;
 use crate::envelope::{Destination, Origin, PeerId};
 use crate::status_text;
 
 const INTRODUCTION: &str =
     concat!("lmpc-sitl ", env!("CARGO_PKG_VERSION"), ": simulated quadrotor, Laguerre MPC");
+/// MAV_CMD_DO_SEND_BANNER, by which ArduPilot's ground stations ask what they are connected to.
+const COMMANDS: &[CommandEntry] = &[CommandEntry::question(42_428)];
 /// Peers that are remembered as told so.
 const MOST_GREETED: usize = 256;
 
@@ -22,6 +25,14 @@ pub struct Greeting {
 }
 
 impl Service for Greeting {
+    fn summary(&self) -> &'static str {
+        "What it is, in words"
+    }
+
+    fn commands(&self) -> &'static [CommandEntry] {
+        COMMANDS
+    }
+
     fn start(&mut self, context: &mut Context) {
         context.say(Severity::Info, INTRODUCTION);
     }
@@ -34,10 +45,18 @@ impl Service for Greeting {
             self.greeted.pop_front();
         }
         self.greeted.push_back(origin.peer);
-        let to = Destination::Peer(origin.peer);
-        context.outbox.send(to, heartbeat::message(&context.vehicle));
-        for message in status_text::messages(Severity::Info, INTRODUCTION, &mut 0) {
-            context.outbox.send(to, message);
-        }
+        context.outbox.send(Destination::Peer(origin.peer), heartbeat::message(&context.vehicle));
+        introduce(context, origin);
+    }
+
+    fn command(&mut self, context: &mut Context, origin: &Origin, _command: &Command) -> Outcome {
+        introduce(context, origin);
+        Ok(Progress::Done)
+    }
+}
+
+fn introduce(context: &mut Context, origin: &Origin) {
+    for message in status_text::messages(Severity::Info, INTRODUCTION, &mut 0) {
+        context.outbox.send(Destination::Peer(origin.peer), message);
     }
 }

@@ -2,12 +2,12 @@
 
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{
-    AUTOPILOT_VERSION_DATA, HOME_POSITION_DATA, MavCmd, PROTOCOL_VERSION_DATA,
+    AUTOPILOT_VERSION_DATA, AUTOPILOT_VERSION_REQUEST_DATA, HOME_POSITION_DATA, MavCmd, PROTOCOL_VERSION_DATA,
 };
 use vehicle::Refusal;
 
 use super::{CommandEntry, Outcome, Progress, Service};
-use crate::codec::Command;
+use crate::codec::{Command, Frame};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin};
 use crate::speaker::Speaker;
@@ -31,12 +31,24 @@ impl Service for MessageRequests {
         "Messages that are asked for once"
     }
 
+    /// ArduPilot's own message from before there were commands for it.
+    fn messages(&self) -> &'static [u32] {
+        &[AUTOPILOT_VERSION_REQUEST_DATA::ID]
+    }
+
     fn commands(&self) -> &'static [CommandEntry] {
         COMMANDS
     }
 
     fn speakers(&self) -> &'static [Speaker] {
         &Speaker::ALL
+    }
+
+    fn receive(&mut self, context: &mut Context, origin: &Origin, _frame: &Frame) {
+        if context.identity().is_ardupilot() {
+            // It is always available.
+            let _ = send_once(context, origin, Speaker::Autopilot, AUTOPILOT_VERSION_DATA::ID, 0);
+        }
     }
 
     fn command(&mut self, context: &mut Context, origin: &Origin, command: &Command) -> Outcome {

@@ -46,8 +46,10 @@ mod range;
 mod reboot;
 mod remote_id;
 mod set_point;
+mod shell;
 mod standard_mode;
 mod telemetry;
+mod terrain;
 mod time_synchronization;
 pub(crate) mod traffic;
 

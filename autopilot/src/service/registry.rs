@@ -49,6 +49,8 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::telemetry::Telemetry),
         Box::new(super::event::Events::default()),
         Box::new(super::range::Ranges),
+        Box::new(super::terrain::Terrain),
+        Box::new(super::shell::Shell),
         Box::new(super::landing_target::LandingTargets),
         Box::new(super::button::Buttons::default()),
         Box::new(super::traffic::Traffic),

@@ -370,7 +370,7 @@ fn a_calibration_tells_its_progress_and_can_be_cancelled() {
     assert_eq!(results(&bench), [(ACCEPTED, 0), (CANCELLED, 0)]);
 
     // What moves, or cannot be calibrated, is not.
-    assert_eq!(calibrate(&mut bench, [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]), UNSUPPORTED);
+    assert_eq!(calibrate(&mut bench, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]), UNSUPPORTED);
     assert_eq!(calibrate(&mut bench, gyro), IN_PROGRESS);
     bench.arm();
     bench.fly(0.1);

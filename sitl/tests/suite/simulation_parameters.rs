@@ -70,6 +70,21 @@ fn wind_blows_as_the_parameters_say() {
     assert!((wind(&bench) - before).norm() > 0.01, "gusts");
 }
 
+/// PX4's own simulation names the air's speed from the north and from the east; the vehicle has the same wind by both names.
+#[test]
+fn px4s_names_of_the_wind_change_it_in_flight() {
+    let mut bench = Bench::hovering(Identity::Px4);
+    set(&mut bench, "SIH_WIND_N", 3.0);
+    set(&mut bench, "SIH_WIND_E", -4.0);
+    assert_eq!((read(&bench, "SIM_WIND_SPD"), read(&bench, "SIH_WIND_E")), (5.0, -4.0));
+    bench.fly(40.0);
+    let wind = bench.autopilot.vehicle().wind_m_s();
+    assert!((wind.x + 3.0).abs() < 0.01 && (wind.y - 4.0).abs() < 0.01, "{wind}");
+    set(&mut bench, "SIH_WIND_N", 0.0);
+    set(&mut bench, "SIH_WIND_E", 0.0);
+    assert_eq!(read(&bench, "SIM_WIND_SPD"), 0.0);
+}
+
 /// The parameters show the wind that the command line has asked for, and a reset brings it back.
 #[test]
 fn the_wind_of_the_start_is_shown() {

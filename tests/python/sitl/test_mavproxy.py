@@ -78,7 +78,7 @@ def test_a_flight_in_guided_mode(start, connect, shell):
     watcher = connect(vehicle, 1)
     console = shell(f"tcp:{vehicle.addresses[0]}")
     # As a file, at once: not one by one after a timeout.
-    assert int(console.expect(r"Received (\d+) parameters \(ftp\)", timeout=10)[1]) > 70
+    assert int(console.expect(r"Received (\d+) parameters \(ftp\)", timeout=60)[1]) > 70
     assert float(console.ask("param show LIM_SPEED_HORIZ", r"LIM_SPEED_HORIZ\s+(\S+)")[1]) == 8.0
     end, typed = time.monotonic() + 20, None
     while watcher.parameter("LIM_SPEED_HORIZ").param_value != 6.0:
@@ -110,7 +110,7 @@ def test_a_flight_with_px4s_modes(start, connect, shell):
     vehicle = start("--speed", "4", links=("udpin:0", "udpin:0"))
     watcher = connect(vehicle, 1)
     console = shell(f"udpout:{vehicle.addresses[0]}")
-    console.expect(r"Received (\d+) parameters \(ftp\)", timeout=10)
+    console.expect(r"Received (\d+) parameters \(ftp\)", timeout=60)
     console.ask("arm throttle", "Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED")
     # MAVProxy means a height above home; PX4 takes an altitude that is below the ground for "as the parameter says".
     console.ask("takeoff 7", "Got COMMAND_ACK: NAV_TAKEOFF: ACCEPTED")
@@ -129,7 +129,7 @@ def test_a_fence_is_loaded_and_kept(start, connect, shell, tmp_path):
     vehicle = start("--autopilot", "ardupilot", "--speed", "4", links=("tcpin:0", "udpin:0"))
     watcher = connect(vehicle, 1)
     console = shell(f"tcp:{vehicle.addresses[0]}")
-    console.expect(r"Received (\d+) parameters \(ftp\)", timeout=10)
+    console.expect(r"Received (\d+) parameters \(ftp\)", timeout=60)
     home = watcher.wait("GLOBAL_POSITION_INT")
     latitude, longitude = home.lat / 1e7, home.lon / 1e7
     north, east = math.degrees(15 / 6_378_137), math.degrees(15 / 6_378_137 / math.cos(math.radians(latitude)))

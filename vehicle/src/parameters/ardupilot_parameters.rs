@@ -203,10 +203,6 @@ const LOGGED: &[&str] = &[
     "Fast harmonic notch",
 ];
 const FENCE_PARTS: &[&str] = &["Maximum height", "Maximum distance", "Zones", "Minimum height"];
-const HEIGHT: u32 = 1;
-const DISTANCE: u32 = 2;
-const ZONES: u32 = 4;
-const FLOOR: u32 = 8;
 
 fn option_bits(options: FenceOptions) -> u32 {
     let margin = u32::from(options.tells_margin) * TELLS_MARGIN;
@@ -222,17 +218,11 @@ fn options(bits: u32) -> FenceOptions {
 }
 
 fn bits(parts: FenceParts) -> u32 {
-    let of = |part: bool, bit: u32| if part { bit } else { 0 };
-    of(parts.height, HEIGHT) | of(parts.distance, DISTANCE) | of(parts.zones, ZONES) | of(parts.floor, FLOOR)
+    u32::from(parts.bits())
 }
 
 fn parts(bits: u32) -> FenceParts {
-    FenceParts {
-        height: bits & HEIGHT != 0,
-        distance: bits & DISTANCE != 0,
-        zones: bits & ZONES != 0,
-        floor: bits & FLOOR != 0,
-    }
+    FenceParts::from_bits(bits as u8)
 }
 
 #[cfg(test)]

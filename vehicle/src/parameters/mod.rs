@@ -21,6 +21,7 @@ mod set_error;
 mod simulation_parameters;
 mod speed;
 mod statistics;
+mod stream_rate_parameters;
 mod suggestion;
 mod surroundings_parameters;
 mod table;

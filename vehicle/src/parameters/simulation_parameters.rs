@@ -1,8 +1,10 @@
 //! ArduPilot's names of what is simulated around the vehicle and in its instruments.
 
+use libm::{atan2, cos, hypot, sin};
+
 use super::ConductParameter;
 use super::conduct_parameter::{bitmask, choice, chosen, real, switch, whole};
-use crate::vehicle::WIND_FROM_DEG;
+use crate::vehicle::{Conduct, WIND_FROM_DEG};
 use crate::world::WindProfile;
 
 /// The wind, which can be changed in flight. ArduPilot keeps it in its files; PX4 has no such parameters, and the vehicle none in its files
@@ -13,6 +15,60 @@ pub static WIND_PARAMETERS: &[ConductParameter] = &[
     chosen!("SIM_WIND_DIR", -360.0..=360.0, simulated.wind_from_deg, WIND_FROM_DEG, "deg", "Direction that the wind comes from"),
     chosen!("SIM_WIND_TURB", 0.0..=20.0, simulated.gusts_m_s, 0.0, "m/s", "Standard deviation of the gusts"),
 ];
+
+/// The same wind by the names of PX4's own simulation (SIH): how fast the air comes from the north and from the east.
+pub static PX4_WIND_PARAMETERS: &[ConductParameter] = &[
+    ConductParameter {
+        get: |conduct| come_from(conduct)[0],
+        set: |conduct, north_m_s| blow_from(conduct, [north_m_s, come_from(conduct)[1]]),
+        ..real!(
+            "SIH_WIND_N",
+            None,
+            -50.0..=50.0,
+            takeoff_height_m,
+            "m/s",
+            "Mean speed of the wind from the north"
+        )
+    },
+    ConductParameter {
+        get: |conduct| come_from(conduct)[1],
+        set: |conduct, east_m_s| blow_from(conduct, [come_from(conduct)[0], east_m_s]),
+        ..real!(
+            "SIH_WIND_E",
+            None,
+            -50.0..=50.0,
+            takeoff_height_m,
+            "m/s",
+            "Mean speed of the wind from the east"
+        )
+    },
+];
+
+/// How fast the wind comes from the north and from the east, m/s.
+fn come_from(conduct: &Conduct) -> [f64; 2] {
+    let (speed_m_s, from_rad) = (
+        conduct.simulated.wind_m_s.unwrap_or(0.0),
+        conduct.simulated.wind_from_deg.unwrap_or(WIND_FROM_DEG).to_radians(),
+    );
+    // What is left of rounding is no wind.
+    [cos(from_rad), sin(from_rad)].map(|share| if share.abs() < 1e-12 { 0.0 } else { speed_m_s * share })
+}
+
+/// Lets it come from there; `false` if it is stronger than the wind may be.
+fn blow_from(conduct: &mut Conduct, [north_m_s, east_m_s]: [f64; 2]) -> bool {
+    let speed_m_s = hypot(north_m_s, east_m_s);
+    if speed_m_s > STRONGEST_M_S {
+        return false;
+    }
+    if speed_m_s > 0.0 {
+        conduct.simulated.wind_from_deg = Some(atan2(east_m_s, north_m_s).to_degrees());
+    }
+    conduct.simulated.wind_m_s = Some(speed_m_s);
+    true
+}
+
+/// Strongest mean wind, m/s.
+const STRONGEST_M_S: f64 = 50.0;
 
 /// Parameters of the simulation, which the vehicle has when it presents itself as ArduPilot.
 #[rustfmt::skip] // One line per parameter reads as the table that it is.

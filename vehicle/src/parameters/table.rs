@@ -11,7 +11,8 @@ use super::loop_names::loop_name;
 use super::mode_parameters::{ARDUPILOT_MODE_PARAMETERS, PX4_MODE_PARAMETERS};
 use super::px4_parameters::PX4_PARAMETERS;
 use super::radio_parameters::radio_parameters;
-use super::simulation_parameters::{SIMULATION_PARAMETERS, WIND_PARAMETERS};
+use super::simulation_parameters::{PX4_WIND_PARAMETERS, SIMULATION_PARAMETERS, WIND_PARAMETERS};
+use super::stream_rate_parameters::STREAM_RATE_PARAMETERS;
 use super::suggestion::suggestion;
 use super::surroundings_parameters::{ARDUPILOT_SURROUNDINGS, PX4_SURROUNDINGS};
 use super::value::within;
@@ -232,6 +233,8 @@ impl ParameterTable {
 fn of_conduct(identity: Identity) -> impl Iterator<Item = Entry> {
     let ardupilot = identity.is_ardupilot();
     let simulated = if ardupilot { SIMULATION_PARAMETERS } else { &[] };
+    let rates = if ardupilot { STREAM_RATE_PARAMETERS } else { &[] };
+    let own_wind = if ardupilot { &[] } else { PX4_WIND_PARAMETERS };
     let (own, of_modes, around) = if ardupilot {
         (ARDUPILOT_PARAMETERS, ARDUPILOT_MODE_PARAMETERS, ARDUPILOT_SURROUNDINGS)
     } else {
@@ -245,9 +248,10 @@ fn of_conduct(identity: Identity) -> impl Iterator<Item = Entry> {
         .chain(around)
         .chain(simulated)
         .chain(equipment_parameters().filter(move |_| ardupilot))
+        .chain(rates.iter().flatten())
         .map(|parameter| (parameter, false))
-        // PX4 has no parameters of the wind: each run has its own.
-        .chain(WIND_PARAMETERS.iter().map(move |parameter| (parameter, !ardupilot)))
+        // PX4 keeps no wind in its files: each run has its own.
+        .chain(WIND_PARAMETERS.iter().chain(own_wind).map(move |parameter| (parameter, !ardupilot)))
         .flat_map(move |(parameter, is_of_run)| {
             let names = parameter.names_in(identity);
             names.map(move |(id, scale, is_other)| Entry {

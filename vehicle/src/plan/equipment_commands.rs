@@ -93,7 +93,7 @@ pub(super) static EQUIPMENT_COMMANDS: &[MissionCommand] = &[
         (1, "pitch", ANGLE.0, ANGLE.1), (2, "yaw", ANGLE.0, ANGLE.1),
         (3, "pitch rate", RATE.0, RATE.1), (4, "yaw rate", RATE.0, RATE.1)], pitch_and_yaw),
     absent(DO_GIMBAL_MANAGER_CONFIGURE, |_| Step::Do(Do::Mark)),
-    command(DO_FENCE_ENABLE, &[1], &[(1, "enable", 0.0, 2.0)], switch_fence),
+    command(DO_FENCE_ENABLE, &[1], &[(1, "enable", 0.0, 2.0), (2, "parts", 0.0, 15.0)], switch_fence),
     command(DO_PARACHUTE, &[1], &[(1, "action", 0.0, 2.0)], parachute),
     command(AIRFRAME_CONFIGURATION, &[2], &[(2, "landing gear", 0.0, 1.0)], |source| {
         if !source.site.identity.is_ardupilot() {
@@ -229,8 +229,10 @@ fn parachute(source: &Source<'_>) -> Step {
 }
 
 fn switch_fence(source: &Source<'_>) -> Step {
-    match FenceSwitch::of_number(libm::round(source.value(1))) {
-        Some(FenceSwitch::FloorOff) if !source.site.identity.is_ardupilot() => without("floor of the fence"),
+    let is_ardupilot = source.site.identity.is_ardupilot();
+    let parts = if is_ardupilot { libm::round(source.value(2)) } else { 0.0 };
+    match FenceSwitch::of_numbers(libm::round(source.value(1)), parts) {
+        Some(FenceSwitch::FloorOff) if !is_ardupilot => without("floor of the fence"),
         switch => Step::Do(switch.map_or(Do::Mark, Do::SwitchFence)),
     }
 }

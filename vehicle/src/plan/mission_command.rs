@@ -120,7 +120,7 @@ static MISSION_COMMANDS: &[MissionCommand] = &[
 
 /// The numbers of all commands that missions, fences and rally points may have.
 pub fn command_numbers() -> impl Iterator<Item = u16> {
-    let of_missions = MISSION_COMMANDS.iter().map(|command| command.number);
+    let of_missions = MISSION_COMMANDS.iter().chain(EQUIPMENT_COMMANDS).map(|command| command.number);
     of_missions.chain(FENCE_COMMANDS).chain([NAV_RALLY_POINT])
 }
 

@@ -14,6 +14,7 @@ use super::precision_settings::PrecisionSettings;
 use super::return_settings::ReturnSettings;
 use super::simulated::Simulated;
 use super::stick_settings::StickSettings;
+use super::stream_rates::StreamRates;
 use super::surroundings_settings::SurroundingsSettings;
 use super::takeoff_check::TakeoffCheckSettings;
 use super::throw::ThrowSettings;
@@ -117,6 +118,9 @@ pub struct Conduct {
     /// What is kept for scripts and changes nothing.
     #[serde(default)]
     pub kept: KeptValues,
+    /// How often groups of messages are sent.
+    #[serde(default)]
+    pub stream_rates: StreamRates,
     /// When it counts as crashed.
     #[serde(default)]
     pub crash: CrashSettings,
@@ -227,6 +231,7 @@ impl Conduct {
             failsafe: FailsafeSettings::new(ardupilot),
             simulated: Simulated::default(),
             kept: KeptValues::default(),
+            stream_rates: StreamRates::default(),
             crash: CrashSettings::default(),
             log: LogConduct::default(),
             sticks: StickSettings::new(ardupilot),

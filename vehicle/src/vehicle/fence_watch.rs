@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use quadrotor::Limits;
 
-use super::failsafe::FenceStart;
+use super::failsafe::{FenceParts, FenceStart};
 use super::fence_keeping::keeps_sticks_inside;
 use super::motion::Motion;
 use super::notice::Refusal;
@@ -59,6 +59,8 @@ pub struct FenceWatch {
     floor_counts: bool,
     /// Whether somebody has switched the floor off.
     floor_is_off: bool,
+    /// Parts that somebody has switched off, by the bits of ArduPilot's parameter; until the fence as a whole is off.
+    parts_off: u8,
 }
 
 impl FenceWatch {
@@ -77,12 +79,37 @@ impl FenceWatch {
         self.floor_counts
     }
 
-    /// Somebody switches it.
-    pub fn switch(&mut self, switch: FenceSwitch) {
+    /// Parts that somebody has switched off, by the bits of ArduPilot's parameter.
+    pub fn parts_off(&self) -> u8 {
+        self.parts_off
+    }
+
+    /// Somebody switches a fence that is on or not, and consists of these parts. Returns whether it is on after that.
+    pub fn switch(&mut self, switch: FenceSwitch, is_on: bool, parts: FenceParts) -> bool {
         self.floor_is_off = switch == FenceSwitch::FloorOff;
-        if switch == FenceSwitch::Off && self.is_on_by_itself() {
-            self.by_itself = ByItself::Off;
+        let on = match switch {
+            FenceSwitch::Off => false,
+            FenceSwitch::On => {
+                self.parts_off = 0;
+                true
+            }
+            FenceSwitch::FloorOff => is_on,
+            FenceSwitch::PartsOn(bits) => {
+                self.parts_off = if is_on { self.parts_off & !bits } else { !bits };
+                true
+            }
+            FenceSwitch::PartsOff(bits) => {
+                self.parts_off |= bits;
+                is_on && parts.bits() & !self.parts_off != 0
+            }
+        };
+        if !on {
+            self.parts_off = 0;
+            if self.is_on_by_itself() {
+                self.by_itself = ByItself::Off;
+            }
         }
+        on
     }
 
     /// Switches the fence on or off by itself, and its floor: a vehicle that starts or lands is below that.
@@ -112,7 +139,7 @@ impl FenceWatch {
     /// The floor, if the vehicle is below it.
     fn below_floor(&self, situation: &Situation) -> Option<Breach> {
         let settings = &situation.conduct.failsafe;
-        let looked_at = situation.fence_is_on && settings.fence_parts.floor && self.floor_counts;
+        let looked_at = situation.fence_is_on && situation.fence_parts().floor && self.floor_counts;
         (looked_at && height_m(situation) < settings.fence_floor_m)
             .then_some(Breach::Floor(settings.fence_floor_m))
     }
@@ -235,8 +262,8 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::{
-        AxisTarget, Breach, FenceStart, FenceSwitch, FenceWatch, Mode, PositionSetPoint, check_goal,
-        check_set_point,
+        AxisTarget, Breach, FenceParts, FenceStart, FenceSwitch, FenceWatch, Mode, PositionSetPoint,
+        check_goal, check_set_point,
     };
     use crate::identity::Identity;
     use crate::vehicle::failsafe::Action;
@@ -356,7 +383,8 @@ mod tests {
         (settings.fence_parts.floor, settings.fence_floor_m, settings.fence_ahead) = (true, 20.0, false);
         let mut watch = FenceWatch::default();
         let mut at = |height_m: f64, switch: Option<FenceSwitch>| {
-            switch.into_iter().for_each(|switch| watch.switch(switch));
+            let parts = scene.conduct.failsafe.fence_parts;
+            switch.into_iter().for_each(|switch| assert!(watch.switch(switch, true, parts)));
             scene.come_to([0.0, 0.0, -height_m], [0.0; 3]);
             watch.watch(&scene.situation());
             watch.record().now
@@ -367,6 +395,25 @@ mod tests {
         assert_eq!((at(25.0, Some(FenceSwitch::On)), at(19.0, None)), (None, Some(Breach::Floor(20.0))));
     }
 
+    /// ArduPilot's mask of parts: what is named is switched, the rest stays, and a fence without a part is off.
+    #[test]
+    fn parts_are_switched_one_by_one() {
+        let parts = FenceParts::from_bits(7);
+        let mut watch = FenceWatch::default();
+        for (switch, was_on, is_on, off) in [
+            (FenceSwitch::PartsOff(1), true, true, 1),
+            (FenceSwitch::PartsOff(2), true, true, 3),
+            (FenceSwitch::PartsOn(1), true, true, 2),
+            (FenceSwitch::On, true, true, 0),
+            (FenceSwitch::PartsOff(7), true, false, 0),
+            (FenceSwitch::PartsOn(2), false, true, !2),
+            (FenceSwitch::PartsOff(2), true, false, 0),
+        ] {
+            assert_eq!(watch.switch(switch, was_on, parts), is_on, "{switch:?}");
+            assert_eq!(watch.parts_off(), off, "{switch:?}");
+        }
+    }
+
     #[test]
     fn a_fence_that_starts_with_arming_ends_with_it_and_can_be_switched_off() {
         let mut scene = Scene::on_the_ground();
@@ -375,7 +422,7 @@ mod tests {
         let mut is_on = |armed: bool, switched_off: bool| {
             scene.armed = armed;
             if switched_off {
-                watch.switch(FenceSwitch::Off);
+                assert!(!watch.switch(FenceSwitch::Off, true, scene.conduct.failsafe.fence_parts));
             }
             watch.watch(&scene.situation());
             watch.is_on_by_itself()

@@ -35,6 +35,8 @@ pub struct Pilot {
     pub is_doubted: bool,
     /// Whether a radio has ever been received.
     pub has_radio: bool,
+    /// Whether the radio is being calibrated: its sticks and switches mean nothing.
+    pub is_calibrating: bool,
 }
 
 /// Where sticks come from.
@@ -59,6 +61,7 @@ pub struct Receiver {
     low_since_us: Option<u64>,
     zero_since_us: Option<u64>,
     optional: bool,
+    calibrating: bool,
     now: Pilot,
 }
 
@@ -124,6 +127,11 @@ impl Receiver {
         self.optional = self.now.lost;
     }
 
+    /// Begins or ends a calibration of the radio. Returns whether one was under way.
+    pub fn calibrate(&mut self, begins: bool) -> bool {
+        std::mem::replace(&mut self.calibrating, begins)
+    }
+
     /// Looks at what has been received up to a time, µs. `timeout_s` is how long sticks count, `watched` whether anything is done about
     /// a throttle that is too low.
     pub fn look(
@@ -134,6 +142,19 @@ impl Receiver {
         time_us: u64,
     ) {
         let pulses = self.pulses(identity, settings, timeout_s, time_us);
+        if self.calibrating {
+            let believed = self.now.believed;
+            let has_radio = self.now.has_radio || pulses.is_some();
+            self.now = Pilot {
+                pulses,
+                believed,
+                has_radio,
+                is_doubted: true,
+                is_calibrating: true,
+                ..Pilot::default()
+            };
+            return;
+        }
         let young = |taken_us: u64| time_us.saturating_sub(taken_us) <= (timeout_s * 1e6) as u64;
         let joystick = self.joystick.filter(|(_, taken_us)| young(*taken_us)).map(|(sticks, _)| sticks);
         let by_radio = pulses.map(|pulses| decoded(&pulses, identity, settings));
@@ -172,6 +193,7 @@ impl Receiver {
             throttle_is_zero: self.zero_since_us.is_some_and(|since_us| time_us >= since_us + ZERO_US),
             pulses,
             has_radio: ever,
+            is_calibrating: false,
         };
     }
 
@@ -323,6 +345,20 @@ mod tests {
             receiver.pilot().sticks.map(|sticks| sticks.right)
         };
         assert_eq!([right(2_999_999), right(3_000_000)], [Some(1.0), Some(0.0)]);
+    }
+
+    #[test]
+    fn a_radio_that_is_calibrated_shows_its_pulses_and_steers_nothing() {
+        let settings = RadioSettings::new(false);
+        let mut receiver = Receiver::default();
+        receiver.receive(pulses([1100, 1900, 1100, 1900]));
+        for (calibrating, steers) in [(false, true), (true, false), (false, true)] {
+            receiver.calibrate(calibrating);
+            receiver.look(Identity::Px4, &settings, (0.5, true), 1_000_000);
+            let pilot = receiver.pilot();
+            assert_eq!((pilot.sticks.is_some(), pilot.is_calibrating), (steers, calibrating));
+            assert!(pilot.pulses.is_some_and(|pulses| pulses[0] == 1100) && !pilot.lost);
+        }
     }
 
     #[test]

@@ -166,6 +166,7 @@ impl Scene {
             breach: None,
             fence_is_ahead: false,
             fence_is_on: self.conduct.failsafe.fence_enabled,
+            fence_parts_off: 0,
             fence_floor_counts: false,
             set_points_are_recent: self.set_points_are_recent,
             set_point_turns: false,

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use quadrotor::{Configuration, EasedLimits, Limits, Outputs};
 
 use super::conduct::Conduct;
-use super::failsafe::Action;
+use super::failsafe::{Action, FenceParts};
 use super::home::Home;
 use super::notice::Refusal;
 use super::receiver::Pilot;
@@ -86,6 +86,8 @@ pub struct Situation<'a> {
     pub fence_is_ahead: bool,
     /// Whether the fence is switched on, by hand or by itself.
     pub fence_is_on: bool,
+    /// Parts of it that are switched off, by the bits of ArduPilot's parameter.
+    pub fence_parts_off: u8,
     /// Whether its floor counts.
     pub fence_floor_counts: bool,
     /// Whether the latest set-point is young enough to fly on.
@@ -224,10 +226,15 @@ impl<'a> Situation<'a> {
         self.fence_is_on.then(|| self.whole_fence())
     }
 
+    /// The parts of the fence that count while it is switched on.
+    pub fn fence_parts(&self) -> FenceParts {
+        FenceParts::from_bits(self.conduct.failsafe.fence_parts.bits() & !self.fence_parts_off)
+    }
+
     /// The fence, switched on or off.
     pub fn whole_fence(&self) -> Fence<'a> {
         let settings = &self.conduct.failsafe;
-        let parts = settings.fence_parts;
+        let parts = self.fence_parts();
         let of = |looked_at: bool, limit_m: f64| if looked_at { limit_m } else { 0.0 };
         Fence {
             zones: parts.zones.then_some(self.zones),

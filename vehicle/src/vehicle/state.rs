@@ -377,6 +377,7 @@ fn situation<'a>(
         breach: machines.fence.record().now,
         fence_is_ahead: machines.fence.record().is_ahead,
         fence_is_on: conduct.failsafe.fence_enabled || machines.fence.is_on_by_itself(),
+        fence_parts_off: machines.fence.parts_off(),
         fence_floor_counts: machines.fence.floor_counts(),
         set_points_are_recent: machines.offboard.is_recent(outputs.time_us, conduct.set_point_timeout_s),
         set_point_turns: machines.offboard.turns(),

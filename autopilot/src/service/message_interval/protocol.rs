@@ -2,7 +2,7 @@
 
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{MESSAGE_INTERVAL_DATA, MavCmd, MavMessage};
-use vehicle::Refusal;
+use vehicle::{Refusal, StreamRates};
 
 use super::schedule::Schedule;
 use crate::codec::{Command, Frame, id};
@@ -30,6 +30,8 @@ const MOST_PER_S: f64 = 4_000.0;
 #[derive(Clone, Debug, Default)]
 pub struct MessageIntervals {
     links: Vec<Schedule>,
+    /// The rates of groups that the parameters had at the last look.
+    rates: StreamRates,
 }
 
 impl Service for MessageIntervals {
@@ -56,8 +58,10 @@ impl Service for MessageIntervals {
     /// Each link begins with the rates of its profile.
     fn start(&mut self, context: &mut Context) {
         let time_us = context.vehicle.time_us();
-        for profile in &context.links {
-            self.links.push(Schedule::new(*profile, context.streams.iter(), time_us));
+        self.rates = context.vehicle.conduct().stream_rates;
+        for (link, profile) in context.links.iter().enumerate() {
+            let rates = self.rates.of_link(link);
+            self.links.push(Schedule::new(*profile, rates, context.streams.iter(), time_us));
         }
     }
 
@@ -84,6 +88,7 @@ impl Service for MessageIntervals {
 
     /// Sends what is due on every link.
     fn stream(&mut self, context: &mut Context) {
+        self.follow_parameters(context);
         let Context { vehicle, parameters, outbox, capabilities, .. } = context;
         let component = Component { vehicle, parameters, capabilities: *capabilities };
         let time_us = vehicle.time_us();
@@ -102,6 +107,19 @@ impl Service for MessageIntervals {
 }
 
 impl MessageIntervals {
+    /// Parameters of rates hold at once.
+    fn follow_parameters(&mut self, context: &Context) {
+        let rates = context.vehicle.conduct().stream_rates;
+        if rates == self.rates {
+            return;
+        }
+        self.rates = rates;
+        let time_us = context.vehicle.time_us();
+        for (link, schedule) in self.links.iter_mut().enumerate() {
+            schedule.change_rates(rates.of_link(link), context.streams.iter(), time_us);
+        }
+    }
+
     /// MAV_CMD_SET_MESSAGE_INTERVAL on the sender's link: µs, 0 for the default, −1 for never.
     fn set(&mut self, context: &Context, origin: &Origin, command: &Command) -> Result<(), Refusal> {
         let number = command.whole(1).ok_or_else(|| Refusal::denied("Message number required"))?;
@@ -111,7 +129,7 @@ impl MessageIntervals {
         let schedule = self.links.get_mut(link).ok_or_else(unknown)?;
         let interval_us = match command.parameter(2) {
             value if value.is_nan() => return Err(unknown()),
-            0.0 => context.links.get(link).and_then(|profile| stream.default_interval_us(*profile)),
+            0.0 => schedule.default_interval_us(stream),
             interval_us => (interval_us > 0.0).then_some(interval_us as u64),
         };
         let per_s = schedule.per_s_with(stream, interval_us);

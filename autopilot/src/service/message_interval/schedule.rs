@@ -1,9 +1,9 @@
 //! The messages of one link with their intervals, and who wants them.
 
-use vehicle::TICK_US;
+use vehicle::{GroupRates, TICK_US};
 
 use crate::envelope::{LinkProfile, PeerId};
-use crate::stream::Stream;
+use crate::stream::{Group, Stream};
 
 /// Longest interval, µs: what MESSAGE_INTERVAL can tell.
 const LONGEST_US: u64 = i32::MAX as u64;
@@ -29,18 +29,50 @@ struct Wish {
 #[derive(Clone, Debug, Default)]
 pub struct Schedule {
     profile: LinkProfile,
+    rates: GroupRates,
     regular: Vec<Regular>,
     wishes: Vec<Wish>,
 }
 
 impl Schedule {
-    /// The messages that a link of this profile gets at the start.
-    pub fn new(profile: LinkProfile, streams: impl Iterator<Item = &'static Stream>, time_us: u64) -> Self {
-        let mut schedule = Self { profile, ..Self::default() };
+    /// The messages that a link of this profile gets at the start, where the rates of their groups say nothing else.
+    pub fn new(
+        profile: LinkProfile,
+        rates: GroupRates,
+        streams: impl Iterator<Item = &'static Stream>,
+        time_us: u64,
+    ) -> Self {
+        let mut schedule = Self { profile, rates, ..Self::default() };
         for stream in streams {
-            schedule.apply(stream, stream.default_interval_us(profile), time_us);
+            schedule.apply(stream, schedule.default_interval_us(stream), time_us);
         }
         schedule
+    }
+
+    /// Interval of a message that nobody has asked for, µs; `None`: it is not sent.
+    pub fn default_interval_us(&self, stream: &Stream) -> Option<u64> {
+        match stream.group.and_then(|group| rate_hz(&self.rates, group)) {
+            Some(0) => None,
+            Some(rate_hz) => Some(1_000_000 / u64::from(rate_hz)),
+            None => stream.default_interval_us(self.profile),
+        }
+    }
+
+    /// Other rates of groups hold for what nobody has asked for.
+    pub fn change_rates(
+        &mut self,
+        rates: GroupRates,
+        streams: impl Iterator<Item = &'static Stream>,
+        time_us: u64,
+    ) {
+        let before = std::mem::replace(&mut self.rates, rates);
+        for stream in streams {
+            let is_other = |group| rate_hz(&before, group) != rate_hz(&rates, group);
+            let is_asked_for = self.wishes.iter().any(|wish| wish.stream.id == stream.id);
+            if stream.group.is_some_and(is_other) && !is_asked_for {
+                self.apply(stream, self.default_interval_us(stream), time_us);
+            }
+        }
     }
 
     /// Interval of a message, µs, if the link gets it.
@@ -71,7 +103,7 @@ impl Schedule {
         for Wish { stream, .. } in gone {
             let latest = self.wishes.iter().rfind(|wish| wish.stream.id == stream.id);
             let interval_us =
-                latest.map_or_else(|| stream.default_interval_us(self.profile), |wish| wish.interval_us);
+                latest.map_or_else(|| self.default_interval_us(stream), |wish| wish.interval_us);
             if interval_us.map(allowed) != self.interval_us(stream.id) {
                 self.apply(stream, interval_us, time_us);
             }
@@ -94,6 +126,19 @@ impl Schedule {
                 regular.due_us = time_us + regular.interval_us;
             }
         }
+    }
+}
+
+/// The rate that a parameter gives a group, Hz.
+fn rate_hz(rates: &GroupRates, group: Group) -> Option<u8> {
+    match group {
+        Group::RawSensors => rates.raw_sensors,
+        Group::ExtendedStatus => rates.extended_status,
+        Group::RcChannels => rates.rc_channels,
+        Group::Position => rates.position,
+        Group::Extra1 => rates.extra1,
+        Group::Extra2 => rates.extra2,
+        Group::Extra3 => rates.extra3,
     }
 }
 

@@ -1,9 +1,9 @@
-//! ATTITUDE and ATTITUDE_QUATERNION.
+//! ATTITUDE, ATTITUDE_QUATERNION and AHRS2.
 
-use mavlink::dialects::ardupilotmega::{ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, MavMessage};
+use mavlink::dialects::ardupilotmega::{AHRS2_DATA, ATTITUDE_DATA, ATTITUDE_QUATERNION_DATA, MavMessage};
 use vehicle::Vehicle;
 
-use crate::codec::{boot_ms, floats};
+use crate::codec::{boot_ms, floats, scaled_degrees};
 
 /// ATTITUDE: ZYX Euler angles and body rates.
 pub fn attitude(vehicle: &Vehicle) -> MavMessage {
@@ -29,5 +29,20 @@ pub fn attitude_quaternion(vehicle: &Vehicle) -> MavMessage {
         pitchspeed,
         yawspeed,
         repr_offset_q: [0.0; 4],
+    })
+}
+
+/// AHRS2: what ArduPilot's second estimator says. Here there is one, which says the same again.
+pub fn second_attitude(vehicle: &Vehicle) -> MavMessage {
+    let outputs = vehicle.outputs();
+    let [roll, pitch, yaw] = floats(&outputs.attitude_rad);
+    let place = vehicle.frame().to_geodetic(&outputs.position_m);
+    MavMessage::AHRS2(AHRS2_DATA {
+        roll,
+        pitch,
+        yaw,
+        altitude: place.altitude_m as f32,
+        lat: scaled_degrees(place.latitude_deg),
+        lng: scaled_degrees(place.longitude_deg),
     })
 }

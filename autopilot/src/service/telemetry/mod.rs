@@ -2,6 +2,7 @@
 
 mod actuators;
 mod attitude;
+mod board;
 mod estimate;
 mod navigation;
 mod position;

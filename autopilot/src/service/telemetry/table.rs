@@ -3,7 +3,7 @@
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::*;
 
-use super::{actuators, attitude, estimate, navigation, position, sensors, status, targets, truth};
+use super::{actuators, attitude, board, estimate, navigation, position, sensors, status, targets, truth};
 use crate::service::Service;
 use crate::stream::{Build, Group, Stream};
 
@@ -24,8 +24,13 @@ impl Service for Telemetry {
 /// Rates in Hz on a ground station's link and on an onboard one; 0 is never, unless it is asked for.
 const STREAMS: &[Stream] = &[
     Stream::new(SYS_STATUS_DATA::ID, [1.0, 5.0], status::sys_status).of(Group::ExtendedStatus),
-    Stream::new(SYSTEM_TIME_DATA::ID, [1.0, 1.0], status::system_time),
-    Stream::new(GPS_RAW_INT_DATA::ID, [1.0, 5.0], sensors::gps_raw_int).of(Group::RawSensors),
+    Stream::new(POWER_STATUS_DATA::ID, [0.0, 0.0], board::power_status)
+        .of(Group::ExtendedStatus)
+        .of_ardupilot(),
+    Stream::new(MEMINFO_DATA::ID, [0.0, 0.0], board::memory).of(Group::ExtendedStatus).of_ardupilot(),
+    Stream::new(HWSTATUS_DATA::ID, [0.0, 0.0], board::hardware_status).of(Group::Extra3).of_ardupilot(),
+    Stream::new(SYSTEM_TIME_DATA::ID, [1.0, 1.0], status::system_time).of(Group::Extra3),
+    Stream::new(GPS_RAW_INT_DATA::ID, [1.0, 5.0], sensors::gps_raw_int).of(Group::ExtendedStatus),
     Stream::new(SCALED_IMU_DATA::ID, [0.0, 0.0], sensors::scaled_imu).of(Group::RawSensors),
     Stream::new(RAW_IMU_DATA::ID, [0.0, 0.0], sensors::raw_imu).of(Group::RawSensors),
     Stream::new(SCALED_PRESSURE_DATA::ID, [0.0, 0.0], sensors::scaled_pressure).of(Group::RawSensors),
@@ -37,6 +42,7 @@ const STREAMS: &[Stream] = &[
         .of_ardupilot(),
     Stream::new(ATTITUDE_DATA::ID, [15.0, 100.0], attitude::attitude).of(Group::Extra1),
     Stream::new(ATTITUDE_QUATERNION_DATA::ID, [15.0, 50.0], attitude::attitude_quaternion).of(Group::Extra1),
+    Stream::new(AHRS2_DATA::ID, [0.0, 0.0], attitude::second_attitude).of(Group::Extra1).of_ardupilot(),
     Stream::new(LOCAL_POSITION_NED_DATA::ID, [10.0, 30.0], position::local_position_ned).of(Group::Position),
     Stream::new(GLOBAL_POSITION_INT_DATA::ID, [5.0, 50.0], position::global_position_int).of(Group::Position),
     Stream::new(SERVO_OUTPUT_RAW_DATA::ID, [1.0, 10.0], status::servo_output_raw).of(Group::RcChannels),
@@ -50,7 +56,8 @@ const STREAMS: &[Stream] = &[
         Build::Perhaps(targets::position_target_local_ned),
     )
     .of(Group::Position),
-    Stream::new(POSITION_TARGET_GLOBAL_INT_DATA::ID, [0.0, 0.0], targets::position_target_global_int),
+    Stream::new(POSITION_TARGET_GLOBAL_INT_DATA::ID, [0.0, 0.0], targets::position_target_global_int)
+        .of(Group::ExtendedStatus),
     Stream::when(PID_TUNING_DATA::ID, [4.0, 10.0], Build::Several(targets::pid_tuning))
         .of(Group::Extra1)
         .of_ardupilot(),
@@ -62,8 +69,8 @@ const STREAMS: &[Stream] = &[
     Stream::new(ACTUATOR_OUTPUT_STATUS_DATA::ID, [0.0, 0.0], actuators::actuator_output_status),
     Stream::new(ACTUATOR_CONTROL_TARGET_DATA::ID, [0.0, 0.0], actuators::actuator_control_target),
     Stream::new(ALTITUDE_DATA::ID, [1.0, 10.0], position::altitude).of(Group::Extra3),
-    Stream::new(BATTERY_STATUS_DATA::ID, [0.5, 0.5], status::battery_status).of(Group::ExtendedStatus),
-    Stream::new(FENCE_STATUS_DATA::ID, [0.5, 1.0], status::fence_status),
+    Stream::new(BATTERY_STATUS_DATA::ID, [0.5, 0.5], status::battery_status).of(Group::Extra3),
+    Stream::new(FENCE_STATUS_DATA::ID, [0.5, 1.0], status::fence_status).of(Group::ExtendedStatus),
     Stream::new(ESTIMATOR_STATUS_DATA::ID, [0.5, 1.0], estimate::estimator_status),
     Stream::new(EKF_STATUS_REPORT_DATA::ID, [1.0, 2.0], estimate::ekf_status_report)
         .of(Group::Extra3)

@@ -14,4 +14,5 @@ mod precision;
 mod proximity;
 mod sticks;
 mod switches;
+mod telemetry;
 mod wind;

@@ -202,3 +202,37 @@ fn the_speed_of_a_landing_ends_with_it() {
     flier.fly(0.1);
     assert_eq!(down_m_s(&flier), usual_m_s);
 }
+
+/// ArduCopter shows the mode in which it has landed until somebody chooses another, and cannot be armed in it.
+#[test]
+fn the_mode_stays_after_the_landing() {
+    for mode in [RTL, LAND] {
+        let mut flier = Flier::new();
+        flier.take_off(5.0, GUIDED);
+        flier.change_mode(mode);
+        flier.wait_disarmed(60.0);
+        flier.fly(1.0);
+        assert_eq!(flier.mode(), mode);
+        let arming = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert_ne!(flier.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, arming), ACCEPTED);
+        assert!(flier.has_said("mode not armable"), "{:?}", flier.bench.texts());
+        flier.take_off(5.0, GUIDED);
+    }
+}
+
+/// So does Auto after its last item; chosen again, the mission begins anew.
+#[test]
+fn auto_stays_after_its_landing() {
+    for last in [20, 21] {
+        let mut flier = with_mission(&[(22, 0.0, 0.0, 8.0), (16, 20.0, 0.0, 8.0), (last, 0.0, 0.0, 0.0)]);
+        for _ in 0..2 {
+            flier.change_mode(GUIDED);
+            flier.arm();
+            flier.change_mode(AUTO);
+            flier.wait("the waypoint", 60.0, |flier| flier.distance_m() > 15.0);
+            flier.wait_disarmed(90.0);
+            flier.fly(1.0);
+            assert_eq!(flier.mode(), AUTO, "after {last}");
+        }
+    }
+}

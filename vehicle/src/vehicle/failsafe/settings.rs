@@ -99,6 +99,30 @@ pub struct FenceParts {
     pub floor: bool,
 }
 
+/// ArduPilot's bits of the parts.
+const HEIGHT: u8 = 1;
+const DISTANCE: u8 = 2;
+const ZONES: u8 = 4;
+const FLOOR: u8 = 8;
+
+impl FenceParts {
+    /// As the bits of ArduPilot's FENCE_TYPE.
+    pub fn bits(self) -> u8 {
+        let of = |part: bool, bit: u8| if part { bit } else { 0 };
+        of(self.height, HEIGHT) | of(self.distance, DISTANCE) | of(self.zones, ZONES) | of(self.floor, FLOOR)
+    }
+
+    /// From these bits.
+    pub fn from_bits(bits: u8) -> Self {
+        Self {
+            height: bits & HEIGHT != 0,
+            distance: bits & DISTANCE != 0,
+            zones: bits & ZONES != 0,
+            floor: bits & FLOOR != 0,
+        }
+    }
+}
+
 /// When the fence is switched on by itself, until the vehicle stands again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum FenceStart {

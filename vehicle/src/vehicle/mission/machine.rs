@@ -236,7 +236,7 @@ impl Mission {
         }
         if self.program.is_flown() {
             self.take_over(situation, proposal);
-        } else {
+        } else if situation.armed || !situation.identity.is_ardupilot() {
             proposal.say(Severity::Warning, "Mission cleared: holding");
             proposal.enter(Mode::Hold);
         }
@@ -414,6 +414,17 @@ impl Mission {
         self.chosen = false;
         self.current = self.program.first();
         self.take_over(situation, proposal);
+    }
+
+    /// The next flight begins with the first step. A mission that is complete says so until then.
+    pub fn begin_anew(&mut self, proposal: &mut Proposal) {
+        if self.progress == Progress::Started {
+            proposal.change_speeds(SpeedChange::ForgetMission);
+            self.give_up(None);
+            self.jumps.clear();
+            (self.progress, self.chosen) = (Progress::NotStarted, false);
+            self.current = self.program.first();
+        }
     }
 
     /// Goes on from where the vehicle is.

@@ -60,7 +60,7 @@ fn fence(situation: &Situation) -> Option<String> {
         return None;
     }
     let settings = &situation.conduct.failsafe;
-    let parts = settings.fence_parts;
+    let parts = situation.fence_parts();
     if parts.height && settings.fence_height_m < 0.0 {
         return Some("Invalid FENCE_ALT_MAX value".to_owned());
     }

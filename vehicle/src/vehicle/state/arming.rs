@@ -45,6 +45,9 @@ impl Vehicle {
         }
         obstacles.extend(self.perception.obstacles(situation.mode.needs()));
         obstacles.extend(self.throttle_obstacle().map(ArmingObstacle::from));
+        if situation.pilot.is_calibrating {
+            obstacles.push(ArmingObstacle::from("RC calibrating".to_owned()));
+        }
         let touched = self.machines.obstacles.touched(&situation);
         obstacles.extend(touched.map(|obstacle| ArmingObstacle::from(format!("touches {}", obstacle.name))));
         let remote_id = self.machines.remote_id.obstacle(&situation).map(str::to_owned);
@@ -53,7 +56,12 @@ impl Vehicle {
         let identity = situation.identity;
         match situation.mode {
             Mode::Land | Mode::Return | Mode::SmartReturn | Mode::Orbit | Mode::Follow => {
-                let text = format!("{} mode is active", identity.mode_name(situation.mode));
+                let name = identity.mode_name(situation.mode);
+                let text = if identity.is_ardupilot() {
+                    format!("{name} mode not armable")
+                } else {
+                    format!("{name} mode is active")
+                };
                 obstacles.push(ArmingObstacle::new(Subject::Mode, text));
             }
             Mode::Mission if !self.has_mission() => {

@@ -177,14 +177,14 @@ impl Vehicle {
             proposal.look_at(None);
             proposal.idle(situation);
         });
-        // A mode that ends on the ground is not one to be armed in.
-        let mode = self.decided.mode();
+        let (mode, identity) = (self.decided.mode(), self.setup.identity());
         if mode == Mode::Mission {
             self.consult(|parts, _, proposal| parts.mission.leave(proposal));
         }
-        if mode.ends_on_the_ground() {
-            self.decided.switch_to(self.setup.identity().first_mode());
+        if identity.is_ardupilot() {
+            self.consult(|parts, _, proposal| parts.mission.begin_anew(proposal));
         }
+        self.decided.switch_to(identity.mode_after_flight(mode));
         self.decided.say(Severity::Info, why);
     }
 

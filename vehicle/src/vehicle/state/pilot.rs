@@ -30,6 +30,11 @@ impl Vehicle {
         self.machines.receiver.receive(pulses);
     }
 
+    /// Begins or ends a calibration of the radio: until its end sticks and switches mean nothing. Returns whether one was under way.
+    pub fn calibrate_radio(&mut self, begins: bool) -> bool {
+        self.machines.receiver.calibrate(begins)
+    }
+
     /// What the pilot's radio sends, if there is one.
     pub fn radio(&self) -> Option<Pulses> {
         self.machines.receiver.radio()

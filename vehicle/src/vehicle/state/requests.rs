@@ -122,15 +122,18 @@ impl Vehicle {
 
     /// Switches the fence.
     pub fn switch_fence(&mut self, switch: FenceSwitch) {
-        self.machines.fence.switch(switch);
-        let enabled = match switch {
-            FenceSwitch::Off => false,
-            FenceSwitch::On => true,
+        let parts = self.conduct().failsafe.fence_parts;
+        let is_on = self.situation().fence_is_on;
+        let enabled = self.machines.fence.switch(switch, is_on, parts);
+        match switch {
             FenceSwitch::FloorOff => {
                 self.decided.say(Severity::Info, "Fence floor disabled");
                 return;
             }
-        };
+            // The rest stays on, by hand or by itself.
+            FenceSwitch::PartsOff(_) if enabled => return,
+            _ => {}
+        }
         let mut conduct = *self.conduct();
         if conduct.failsafe.fence_enabled != enabled {
             conduct.failsafe.fence_enabled = enabled;

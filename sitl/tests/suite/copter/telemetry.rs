@@ -1,0 +1,154 @@
+//! What is streamed, and how often: SRn_ parameters, the groups of REQUEST_DATA_STREAM, terrain and the board.
+
+use super::flier::*;
+use mavlink::MessageData;
+use mavlink::dialects::ardupilotmega::*;
+
+/// Messages of a second that a choice takes.
+fn per_second(flier: &mut Flier, choose: impl Fn(&MavMessage) -> bool) -> usize {
+    flier.bench.heard.clear();
+    flier.fly(1.0);
+    flier.all(|message| choose(message).then_some(())).len()
+}
+
+/// A second may begin or end with a message.
+fn is_near(count: usize, rate_hz: usize) -> bool {
+    count.abs_diff(rate_hz) <= 1
+}
+
+fn check_attitudes(flier: &mut Flier, rate_hz: usize, why: &str) {
+    let count = per_second(flier, |message| matches!(message, MavMessage::ATTITUDE(_)));
+    assert!(is_near(count, rate_hz), "{count}, not {rate_hz}: {why}");
+}
+
+/// Ground stations set the rates of the first link by parameters; what a client asks for itself comes first.
+#[test]
+fn rates_of_groups_follow_their_parameters() {
+    let mut flier = Flier::new();
+    flier.set("SR0_EXTRA1", 4.0);
+    check_attitudes(&mut flier, 15, "shown as that before, and not set");
+    flier.set("SR0_EXTRA1", 20.0);
+    check_attitudes(&mut flier, 20, "as the parameter says");
+    flier.set("SR1_EXTRA1", 50.0);
+    check_attitudes(&mut flier, 20, "another link");
+    flier.reboot();
+    check_attitudes(&mut flier, 20, "kept over a reboot");
+    let every_200_ms = [ATTITUDE_DATA::ID as f32, 200_000.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, every_200_ms), ACCEPTED);
+    flier.set("SR0_EXTRA1", 10.0);
+    check_attitudes(&mut flier, 5, "as the client has asked");
+    let default = [ATTITUDE_DATA::ID as f32, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, default), ACCEPTED);
+    check_attitudes(&mut flier, 10, "the default is that of the parameter");
+    flier.set("SR0_EXT_STAT", 0.0);
+    assert_eq!(per_second(&mut flier, |message| matches!(message, MavMessage::SYS_STATUS(_))), 0);
+}
+
+/// ArduCopter's groups: clients ask for one and wait for messages of it.
+#[test]
+#[allow(deprecated)] // MAVProxy and DroneKit send it.
+fn groups_bring_what_arducopters_bring() {
+    let groups: [(MavDataStream, &[u32]); 4] = [
+        (
+            MavDataStream::MAV_DATA_STREAM_EXTENDED_STATUS,
+            &[
+                SYS_STATUS_DATA::ID,
+                POWER_STATUS_DATA::ID,
+                MEMINFO_DATA::ID,
+                MISSION_CURRENT_DATA::ID,
+                GPS_RAW_INT_DATA::ID,
+                NAV_CONTROLLER_OUTPUT_DATA::ID,
+                FENCE_STATUS_DATA::ID,
+            ],
+        ),
+        (MavDataStream::MAV_DATA_STREAM_EXTRA1, &[ATTITUDE_DATA::ID, SIMSTATE_DATA::ID, AHRS2_DATA::ID]),
+        (
+            MavDataStream::MAV_DATA_STREAM_EXTRA3,
+            &[
+                SYSTEM_TIME_DATA::ID,
+                TERRAIN_REPORT_DATA::ID,
+                BATTERY_STATUS_DATA::ID,
+                EKF_STATUS_REPORT_DATA::ID,
+                VIBRATION_DATA::ID,
+            ],
+        ),
+        (
+            MavDataStream::MAV_DATA_STREAM_POSITION,
+            &[GLOBAL_POSITION_INT_DATA::ID, LOCAL_POSITION_NED_DATA::ID],
+        ),
+    ];
+    for (group, ids) in groups {
+        let mut flier = Flier::new();
+        flier.bench.send(MavMessage::REQUEST_DATA_STREAM(REQUEST_DATA_STREAM_DATA {
+            req_message_rate: 8,
+            target_system: 1,
+            target_component: 1,
+            req_stream_id: group,
+            start_stop: 1,
+        }));
+        for id in ids {
+            let count = per_second(&mut flier, |message| mavlink::Message::message_id(message) == *id);
+            assert!(is_near(count, 8), "{group:?}: {count} messages {id}");
+        }
+    }
+}
+
+/// The ground is flat, at the height of home: of the vehicle and of any place that is asked for.
+#[test]
+fn terrain_is_reported_and_checked() {
+    let mut flier = Flier::new();
+    flier.take_off(10.0, GUIDED);
+    let ground_m = flier.vehicle().frame().origin().altitude_m;
+    let report = |message: &MavMessage| match message {
+        MavMessage::TERRAIN_REPORT(report) => Some(report.clone()),
+        _ => None,
+    };
+    let asked = [TERRAIN_REPORT_DATA::ID as f32, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, asked), ACCEPTED);
+    let below = flier.latest(report).expect("a report");
+    assert!((f64::from(below.terrain_height) - ground_m).abs() < 1e-3 && below.spacing > 0, "{below:?}");
+    assert!((f64::from(below.current_height) - flier.height_m()).abs() < 0.1 && below.pending == 0);
+    let (lat, lon) = (below.lat + 12_345, below.lon - 54_321);
+    flier.bench.heard.clear();
+    flier.bench.send(MavMessage::TERRAIN_CHECK(TERRAIN_CHECK_DATA { lat, lon }));
+    let there = flier.latest(report).expect("an answer");
+    assert_eq!((there.lat, there.lon, there.terrain_height), (lat, lon, below.terrain_height));
+}
+
+/// Mission Planner and older clients ask for these when they connect.
+#[test]
+fn it_introduces_itself_when_it_is_asked() {
+    let mut flier = Flier::new();
+    let banner = MavCmd::MAV_CMD_DO_SEND_BANNER;
+    assert_eq!(flier.command(banner, [0.0; 7]), ACCEPTED);
+    assert!(flier.has_said("simulated quadrotor"), "{:?}", flier.bench.texts());
+    flier.bench.heard.clear();
+    flier.bench.send(MavMessage::AUTOPILOT_VERSION_REQUEST(AUTOPILOT_VERSION_REQUEST_DATA {
+        target_system: 1,
+        target_component: 1,
+    }));
+    let version = flier.latest(|message| match message {
+        MavMessage::AUTOPILOT_VERSION(version) => Some(version.flight_sw_version),
+        _ => None,
+    });
+    assert!(version.is_some_and(|version| version >> 24 == 4), "{version:?}");
+}
+
+/// PREFLIGHT_CALIBRATION, parameter 4: the ground station sees the pulses, and sticks arm nothing until it is over.
+#[test]
+fn a_radio_is_calibrated_without_steering() {
+    let mut flier = Flier::new();
+    flier.change_mode(STABILIZE);
+    let radio = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, radio), ACCEPTED);
+    flier.rc(4, 2000);
+    flier.fly(3.0);
+    let yaw = flier.latest(|message| match message {
+        MavMessage::RC_CHANNELS(channels) => Some(channels.chan4_raw),
+        _ => None,
+    });
+    assert_eq!((yaw, flier.is_armed()), (Some(2000), false));
+    assert_eq!(flier.obstacles(), ["PreArm: RC calibrating"]);
+    assert_eq!(flier.command(MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, [0.0; 7]), ACCEPTED);
+    flier.wait("armed by the rudder", 4.0, |flier| flier.is_armed());
+}
