@@ -277,7 +277,7 @@ class Flight:
             self.fail("the vehicle does not clear the plan")
 
     def land(self):
-        self.spoken = False  # whether a set-point has gone since the last report
+        self.spoken = False
         self.idle()
         self.command(mavlink.MAV_CMD_NAV_LAND)
         self.until(lambda: not self.armed, 60, "landing")
@@ -327,8 +327,9 @@ class Flight:
 
         for quantity, name, unit in ((1, "position", "m"), (2, "velocity", "m/s")):
             for axis, (direction, colour) in enumerate(colours.items()):
+                # Narrower from one to the next: where two are equal, both are seen.
                 axes[name].plot([report[0] for report in flown], [report[quantity][axis] for report in flown], color=colour,
-                                label=direction)
+                                linewidth=2.7 - 0.7 * axis, label=direction)
                 # A gap in time is a gap in the line.
                 given = [(a[0], a[quantity][axis]) if a[quantity] else (a[0], math.nan) for a in asked]
                 line = crosses if places else dashed

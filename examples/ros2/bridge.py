@@ -119,9 +119,9 @@ class Bridge(Node):
         self.answers.pop(number, None)
         self.link.mav.command_long_send(1, 1, number, 0, *values, *[0] * (7 - len(values)))
         end = time.monotonic() + PATIENCE
-        while number not in self.answers and time.monotonic() < end:
+        while number not in self.answers and (left := end - time.monotonic()) > 0:
+            self.link.select(left)
             self.read()
-            time.sleep(0.002)
         result = self.answers.get(number)
         answer.success = result == mavlink.MAV_RESULT_ACCEPTED
         answer.message = f"no answer within {PATIENCE:.0f} s: check --connect" if result is None else mavlink.enums["MAV_RESULT"][result].name

@@ -10,7 +10,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 from pyulog import ULog
 
-AXES = {"x": "north", "y": "east", "z": "down"}
+#: Name and sign of each axis as it is drawn.
+AXES = {"x": ("north", 1), "y": ("east", 1), "z": ("up", -1)}
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7")
 REFERENCE = {"color": "#333333", "linestyle": (0, (5, 3)), "linewidth": 1.2}
 
@@ -42,9 +43,9 @@ def _seconds(data) -> np.ndarray:
 
 def _position(panel, topics) -> None:
     flown, asked = topics["vehicle_local_position"], topics["vehicle_local_position_setpoint"]
-    for (axis, name), colour in zip(AXES.items(), COLOURS):
-        panel.plot(_seconds(flown), flown[axis], color=colour, label=name)
-        panel.plot(_seconds(asked), asked[axis], **REFERENCE, label="reference" if axis == "z" else None)
+    for (axis, (name, sign)), colour in zip(AXES.items(), COLOURS):
+        panel.plot(_seconds(flown), sign * flown[axis], color=colour, label=name)
+        panel.plot(_seconds(asked), sign * asked[axis], **REFERENCE, label="reference" if axis == "z" else None)
     panel.set_ylabel("position, m")
 
 

@@ -107,7 +107,7 @@ def default() -> Flight:
     """Nothing set: the shaper flies to the goal."""
     return Flight(
         name="default",
-        title="nothing set: the shaper flies to 5 m north, 5 m east, 10 m up",
+        title="no settings, the shaper flies to 5 m north, 5 m east, 10 m up",
         duration=12.0,
         checks=lambda errors: [*overshoot_below(errors, 0.5), *arrived(errors), tilt_within_limit(errors)],
     )
@@ -128,7 +128,7 @@ def disturbed(force: float = 1.0, mass_factor: float = 0.8) -> Flight:
     """The default flight, pushed east by a constant force, with controllers that believe in a wrong mass."""
     return Flight(
         name="disturbed",
-        title=f"{force:g} N push east from 2 s on, controllers believe in {mass_factor:.0%} of the mass",
+        title=f"{force:g} N push east from 2 s on, controllers believe in {100 * mass_factor:.0f} % of the mass",
         duration=20.0,
         checks=lambda errors: [*arrived(errors), tilt_within_limit(errors)],
         start_values={"controller.mass_factor": mass_factor},

@@ -61,7 +61,10 @@ def _path_figure(flight, result):
     for point in range(0, len(flown), max(1, len(flown) // 24)):
         axes.plot([east[point]] * 2, [north[point]] * 2, [0, altitude[point]], color="#dddddd", linewidth=0.7)
     axes.plot(east, north, altitude, color=COLOURS["north"], linewidth=2.4, label="flown")
-    axes.plot(reference[:, 1], reference[:, 0], reference[:, 2], label="reference", **REFERENCE)
+    if np.ptp(reference, axis=0).any():
+        axes.plot(reference[:, 1], reference[:, 0], reference[:, 2], label="reference", **REFERENCE)
+    else:
+        axes.scatter(reference[0, 1], reference[0, 0], reference[0, 2], color=REFERENCE["color"], marker="x", s=90, label="reference")
     axes.scatter(east[0], north[0], altitude[0], color="#333333", s=30, label="start")
     axes.scatter(east[-1], north[-1], altitude[-1], color="#d55e00", s=40, label="end")
     axes.set(xlabel="east, m", ylabel="north, m", zlabel="altitude, m")
@@ -80,7 +83,9 @@ def _axes_figure(flight, result):
     figure, grid = plt.subplots(4, 2, sharex=True, figsize=(10, 9), width_ratios=(3, 2))
     for row, axis in enumerate(("north", "east", "altitude")):
         _value(grid[row, 0], time, flown[:, row], reference[:, row], axis, f"{axis}, m")
-        _error(grid[row, 1], time, 1e3 * (flown[:, row] - reference[:, row]), axis, "error, mm")
+        error = flown[:, row] - reference[:, row]
+        scale, unit = (1, "m") if np.abs(error).max() > 1 else (1e3, "mm")
+        _error(grid[row, 1], time, scale * error, axis, f"error, {unit}")
     yaw = np.unwrap(result["attitude.psi"])
     _value(grid[3, 0], time, np.rad2deg(yaw), np.rad2deg(yaw_reference), "heading", "heading ψ, deg")
     _error(grid[3, 1], time, np.rad2deg(wrapped(yaw - yaw_reference)), "heading", "error, deg")
@@ -98,7 +103,8 @@ def _value(axes, time, flown, reference, axis, label):
     axes.plot(time, reference, label="reference", **REFERENCE)
     _at_least(axes, np.concatenate([flown, reference]), 0.5)
     axes.set_ylabel(label)
-    axes.legend(loc="lower right")
+    # Where the curves leave room.
+    axes.legend(loc="best")
 
 
 def _error(axes, time, error, axis, label):

@@ -54,6 +54,21 @@ pub enum Failure {
         /// Its version.
         version: String,
     },
+    /// Some packages are built for one Python on one system.
+    #[error(
+        "{what} is packaged for Python 3.11 on Linux (x86-64) only, and this is Python {version} on {system} ({architecture}): \
+         there, set the environment variable PYTHON to the path of a Python 3.11"
+    )]
+    OtherPython {
+        /// What is in the packages.
+        what: &'static str,
+        /// Version of the interpreter.
+        version: String,
+        /// Operating system.
+        system: &'static str,
+        /// Processor.
+        architecture: &'static str,
+    },
     /// Python comes without venv or pip.
     #[error(
         "{program} has no venv and pip: on Debian and Ubuntu install python3-venv, elsewhere Python from python.org"

@@ -172,6 +172,11 @@ pub struct Interpreter {
 }
 
 impl Interpreter {
+    /// Its version: three numbers with points between them.
+    pub fn version(&self) -> &str {
+        &self.version
+    }
+
     /// A command of this interpreter, for scripts that need no packages.
     pub fn command(&self) -> Command {
         let mut command = Command::new(&self.program);

@@ -78,19 +78,22 @@ class Page:
         scale = box[3] / 2 / math.tan(math.radians(FIELD_OF_VIEW_DEG) / 2) / way.dot(forward)
         return box[0] + box[2] / 2 + way.dot(right) * scale, box[1] + box[3] / 2 + way.dot(down) * scale
 
-    def dark_pixels(self, point, reach: int = 14) -> int:
-        """How many pixels around a point of the page are as dark as the vehicle's body is in light colours."""
-        import io
-
-        from PIL import Image
-
-        # As fine as on a quick machine.
+    def fine(self):
+        """Draws as fine as on a quick machine."""
         self.page.evaluate("""async () => {
             const { view } = window.lmpcView;
             Object.assign(view.fineness, { share: 1, take: () => false });
             view.resize();
             await new Promise(requestAnimationFrame); await new Promise(requestAnimationFrame);
         }""")
+
+    def dark_pixels(self, point, reach: int = 14) -> int:
+        """How many pixels around a point of the page are as dark as the vehicle's body is in light colours."""
+        import io
+
+        from PIL import Image
+
+        self.fine()
         image = self.page.screenshot(clip={"x": point[0] - reach, "y": point[1] - reach, "width": 2 * reach, "height": 2 * reach})
         pixels = np.asarray(Image.open(io.BytesIO(image)).convert("L"), dtype=float)
         return int((pixels < 75).sum())

@@ -1,9 +1,5 @@
-"""The book's pictures show what flies today: each is made anew by what made it, and compared.
+"""The book's pictures show what flies today. That of the live page is made by its own test."""
 
-`RECORD_PICTURES=1` with these tests writes those that are made here into the book.
-"""
-
-import os
 import re
 from pathlib import Path
 
@@ -17,11 +13,9 @@ import flights
 import overview
 import plots
 import vehicle
+from pictures import IMAGES, check, difference
 
 ROOT = Path(__file__).resolve().parents[3]
-IMAGES = ROOT / "book" / "src" / "images"
-#: Side of the squares whose mean brightness is compared, so that a line may move by a pixel.
-SQUARE = 10
 
 
 @pytest.fixture(scope="session")
@@ -57,33 +51,13 @@ def step_picture(unzipped, program, circle, folder):
 MADE = {"circle.png": circle_picture, "mission.png": mission_picture, "flight.png": flight_picture, "step.png": step_picture}
 #: A photograph of FMPy's page in a browser: compared by its curves.
 OF_A_BROWSER = "fmpy.png"
-
-
-def brightness(file: Path) -> np.ndarray:
-    """Mean brightness of squares, 0 to 255."""
-    with Image.open(file) as image:
-        pixels = np.asarray(image.convert("L"), dtype=float)
-    rows, columns = (length // SQUARE for length in pixels.shape)
-    return pixels[: rows * SQUARE, : columns * SQUARE].reshape(rows, SQUARE, columns, SQUARE).mean(axis=(1, 3))
-
-
-def difference(one: Path, other: Path) -> float:
-    """Share of the drawn squares that look different."""
-    a, b = brightness(one), brightness(other)
-    if a.shape != b.shape:
-        return 1.0
-    drawn = (a < 250) | (b < 250)
-    return float((np.abs(a - b)[drawn] > 25).mean())
+#: Drawn by the tests in a browser.
+LIVE_PAGE = "live-page.png"
 
 
 @pytest.mark.parametrize("name", MADE)
 def test_the_picture_is_what_flies(name, unzipped, program, circle, tmp_path):
-    made = MADE[name](unzipped, program, circle, tmp_path)
-    if os.environ.get("RECORD_PICTURES"):
-        with Image.open(made) as drawn:
-            drawn.convert("RGB").quantize(128).save(IMAGES / name, optimize=True)
-    differs = difference(made, IMAGES / name)
-    assert differs < 0.02, f"{100 * differs:.1f} % of {name} looks different: look at {made}; RECORD_PICTURES=1 keeps it"
+    check(MADE[name](unzipped, program, circle, tmp_path), name, 0.02)
 
 
 def test_fmpys_curves_are_the_flight(unzipped):
@@ -108,7 +82,7 @@ def test_fmpys_curves_are_the_flight(unzipped):
 def test_every_picture_of_the_book_is_checked():
     shown = {name for page in [ROOT / "README.md", *(ROOT / "book" / "src").rglob("*.md")]
              for name in re.findall(r"!\[[^\]]*\]\([^)]*?([\w-]+\.(?:png|svg|jpg|webp))\)", page.read_text(encoding="utf-8"))}
-    assert shown == {file.name for file in IMAGES.iterdir()} == {*MADE, OF_A_BROWSER}
+    assert shown == {file.name for file in IMAGES.iterdir()} == {*MADE, OF_A_BROWSER, LIVE_PAGE}
 
 
 def test_another_flight_looks_different(tmp_path, unzipped, circle):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from browser import Page, browser, needs_browser
 from client import near
+from pictures import check, difference
 
 pytestmark = pytest.mark.browser
 
@@ -203,14 +204,21 @@ def test_pixels_become_coarser_where_drawing_is_slow_and_fine_again(start, look)
     assert 0.4 < large < 0.6
 
 
+def waypoints(folder, *places):
+    """A plan that takes off and flies to places, north, east and up of home, m."""
+    home, earth = (47.397742, 8.545594), 6_371_000.0
+    rows = [(16, *home, 488), (22, 0, 0, 6)]
+    for north, east, height in places:
+        rows.append((16, home[0] + math.degrees(north / earth), home[1] + math.degrees(east / earth / math.cos(math.radians(home[0]))), height))
+    lines = [f"{item}\t{int(item == 0)}\t{3 if item else 0}\t{command}\t0\t0\t0\t0\t{latitude}\t{longitude}\t{height}\t1"
+             for item, (command, latitude, longitude, height) in enumerate(rows)]
+    plan = folder / "survey.waypoints"
+    plan.write_text("\n".join(["QGC WPL 110", *lines]) + "\n")
+    return str(plan)
+
+
 def test_missions_and_fences_are_drawn_where_they_are(start, look, tmp_path):
-    plan = tmp_path / "survey.waypoints"
-    home = (47.397742, 8.545594)
-    north = 20 / 111_194.9  # degrees
-    lines = ["QGC WPL 110", f"0\t1\t0\t16\t0\t0\t0\t0\t{home[0]}\t{home[1]}\t488\t1", "1\t0\t3\t22\t0\t0\t0\t0\t0\t0\t6\t1",
-             f"2\t0\t3\t16\t0\t0\t0\t0\t{home[0] + north}\t{home[1]}\t8\t1"]
-    plan.write_text("\n".join(lines) + "\n")
-    vehicle = start("--view", "127.0.0.1:0", "--mission", str(plan), "--set", "GF_MAX_HOR_DIST=40", "--set", "GF_ACTION=1")
+    vehicle = start("--view", "127.0.0.1:0", "--mission", waypoints(tmp_path, (20, 0, 8)), "--set", "GF_MAX_HOR_DIST=40", "--set", "GF_ACTION=1")
     shown = look(vehicle.ready["view"])
     shown.wait("page.scene.vehicles[0]?.mission.length > 0 && page.scene.vehicles[0].fence")
     last = shown.value("page.scene.vehicles[0].mission.at(-1).position_m")
@@ -282,6 +290,36 @@ def test_a_record_is_flown_again_and_shown(start, connect, look, tmp_path):
     live.page.get_by_text("broken.lmpc: is not a record: line 1").first.wait_for()
 
 
+def test_the_picture_in_the_book_is_the_page(program, start, look, tmp_path):
+    """A flight that nobody steers, so that it is always the same, at one of its instants."""
+    record, plan = tmp_path / "survey.lmpc", waypoints(tmp_path, (20, 0, 8), (20, 20, 12), (0, 20, 8), (0, 0, 8))
+    fence = ("--set", "GF_MAX_HOR_DIST=35", "--set", "GF_MAX_VER_DIST=15", "--set", "GF_ACTION=2")
+    flags = ("--mission", plan, "--autostart", *fence, "--wind", "4", "--gusts", "1", "--speed", "max", "--duration", "25")
+    subprocess.run([program, "--link", "udpin:0", *flags, "--record", record], check=True, timeout=60)
+    shown = look(start("--view-record", str(record), "--view", "127.0.0.1:0", links=()).ready["view"], size=(1280, 860))
+    shown.wait("page.recording && page.frame")
+    shown.page.locator("#view").focus()
+    shown.page.keyboard.press(" ")
+    shown.wait("page.recording.paused")
+    shown.page.get_by_role("button", name="Show all").click()
+    for key in ("ArrowRight", "ArrowRight", "ArrowRight", "+", "+", "+"):
+        shown.page.keyboard.press(key)
+    seek = shown.page.get_by_role("slider", name="Time in the recording")
+    pictures = {}
+    for time in ("8", "19"):
+        seek.fill(time)
+        shown.wait(f"Math.abs(page.frame.time - {time}) < 0.04")
+        shown.fine()
+        # Numbers are written last.
+        height = -shown.value("page.frame.vehicles[0].position[2]")
+        shown.page.get_by_text(f"{height:.2f} m", exact=True).wait_for()
+        shown.page.evaluate("() => document.activeElement.blur()")
+        pictures[time] = tmp_path / f"{time}.png"
+        shown.page.screenshot(path=pictures[time])
+    check(pictures["19"], "live-page.png", 0.02)
+    assert difference(*pictures.values()) > 0.02
+
+
 def test_a_page_with_the_flight_in_it_opens_from_the_disk(program, look, tmp_path):
     table = tmp_path / "result <1>.csv"
     rows = [f"{time:.1f},{time:.1f},0,-2" for time in np.arange(0, 10.05, 0.1)]
@@ -313,8 +351,18 @@ def test_a_log_is_opened_by_the_page_itself(start, connect, look, tmp_path):
     shown.wait("page.recording && page.frame")
     heights = shown.value("page.recording.states.get(1).map((state) => -state.position[2])")
     pyulog = pytest.importorskip("pyulog", reason="pyulog is among the packages of `cargo xtask test`")
-    position, = [topic for topic in pyulog.ULog(str(log)).data_list if topic.name == "vehicle_local_position_groundtruth"]
-    assert max(heights) == pytest.approx(-position.data["z"].min(), abs=0.02)
+    topics = {topic.name: topic.data for topic in pyulog.ULog(str(log)).data_list}
+    flown, asked, own = (topics[name] for name in ("vehicle_local_position_groundtruth", "vehicle_local_position_setpoint", "lmpc_status"))
+    assert max(heights) == pytest.approx(-flown["z"].min(), abs=0.02)
+    # Topics have other rates than the page: what moves is between the samples of each.
+    rows = shown.value("page.recording.states.get(1).map((state, index) => [page.recording.times[index], state.tracks, state.setpoint[2], state.position[2]])")
+    times, _, down, at = np.array([row for row in rows if row[1]], dtype=float).T
+    assert len(times) > 100
+    assert down == pytest.approx(np.interp(1e6 * times, asked["timestamp"], asked["z"]), abs=1e-4)
+    assert at == pytest.approx(np.interp(1e6 * times, flown["timestamp"], flown["z"]), abs=1e-4)
+    for name, columns in (("thrust", ["thrust_n"]), ("active", [f"{law}_active_constraints" for law in ("altitude", "position", "attitude")])):
+        drawn = {value for value in shown.value(f"page.recording.states.get(1).flatMap((state) => state.{name})") if not math.isnan(value)}
+        assert max(drawn) > 0 and drawn <= set(np.concatenate([own[column] for column in columns]).tolist()), name
     shown.page.get_by_role("button", name="Close the recording").click()
     shown.wait("!page.recording && page.frame")
     shown.page.set_input_files("#file", {"name": "broken.ulg", "mimeType": "application/octet-stream", "buffer": b"nothing"})

@@ -204,8 +204,11 @@ async function open(name, buffer) {
     }
     show(new Recording(name, readRecording(name, content)));
   } catch (error) {
-    controls.tell(`${name}: ${error.message}`, true);
-    write("connection", `${name}: ${error.message}`);
+    const text = `${name}: ${error.message}`;
+    controls.tell(text, true);
+    // Answers to orders are not shown beside a recording.
+    if (page.stream && !page.recording) return tellConnection();
+    write("connection", text);
     find("connection").dataset.state = "lost";
   }
 }

@@ -37,7 +37,7 @@ function rows(state, news) {
     ["Tracking error", state.tracks ? known(error, `${error.toFixed(3)} m`) : "no set-point", false],
     ["Thrust", known(state.thrust, `${state.thrust.toFixed(2)}${Number.isFinite(state.strongest) ? ` of ${state.strongest.toFixed(1)}` : ""} N`), false],
     ["Active limits", known(state.active[0], limits.join(", ") || "none"), false],
-    ["Solver", known(worst, `${SOLVER[worst]}${Number.isFinite(iterations) ? `, ${iterations} iterations` : ""}`), worst > 1],
+    ["Solver", known(worst, `${SOLVER[worst]}${Number.isFinite(iterations) ? `, ${iterations} iteration${iterations === 1 ? "" : "s"}` : ""}`), worst > 1],
     ["Battery", known(state.battery, `${(100 * state.battery).toFixed(0)} %, ${state.voltage.toFixed(1)} V`), state.battery < 0.2],
     ["Wind", known(state.wind[0], windText(state.wind)), false],
     ["Faults", news && (news.faults.join(", ") || "none"), Boolean(news?.faults.length)],

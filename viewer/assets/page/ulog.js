@@ -12,8 +12,11 @@ const TYPES = {
 /** What is read of which topic. */
 const WANTED = [
   "vehicle_local_position", "vehicle_local_position_groundtruth", "vehicle_attitude", "vehicle_attitude_groundtruth",
-  "vehicle_local_position_setpoint", "vehicle_status", "vehicle_land_detected", "battery_status", "wind",
+  "vehicle_local_position_setpoint", "vehicle_status", "vehicle_land_detected", "battery_status", "wind", "lmpc_status",
 ];
+const LAWS = ["altitude", "position", "attitude"];
+/** Between samples that are no farther apart than this, µs, what is logged moves evenly. */
+const SOON_US = 0.5e6;
 const PERIOD_S = 1 / 30;
 /** A time stamp that is later than this, s, is no flight but a broken file. */
 const LONGEST_S = 86400;
@@ -88,6 +91,16 @@ class Latest {
     while (this.index + 1 < this.rows.length && this.rows[this.index + 1]("timestamp") <= time) this.index += 1;
     return this.index < 0 ? null : this.rows[this.index];
   }
+
+  /** Fields at a time. Topics have rates of their own: held values of two of them would differ by what is flown between samples. */
+  between(time, names) {
+    const row = this.at(time);
+    if (!row) return names.map(() => NaN);
+    const next = this.rows[this.index + 1];
+    const gap = next ? next("timestamp") - row("timestamp") : Infinity;
+    const share = gap <= SOON_US ? (time - row("timestamp")) / gap : 0;
+    return names.map((name) => (share > 0 ? row(name) + share * (next(name) - row(name)) : row(name)));
+  }
 }
 
 /** Times, s, and states of one vehicle. Throws with what is wrong. */
@@ -100,6 +113,7 @@ export function readUlog(buffer) {
     ["position", truth("vehicle_local_position")], ["attitude", truth("vehicle_attitude")],
     ["setpoint", rows.get("vehicle_local_position_setpoint")], ["status", rows.get("vehicle_status")],
     ["land", rows.get("vehicle_land_detected")], ["battery", rows.get("battery_status")], ["wind", rows.get("wind")],
+    ["controllers", rows.get("lmpc_status")],
   ].map(([name, list]) => [name, new Latest(list)]));
   const places = latest.position.rows;
   if (places.length === 0) throw new Error("The log has no topic vehicle_local_position: nothing can be drawn. Open a log that contains it.");
@@ -109,22 +123,30 @@ export function readUlog(buffer) {
   for (let time = first; time <= last; time += PERIOD_S * 1e6) {
     const now = Object.fromEntries(Object.entries(latest).map(([name, list]) => [name, list.at(time)]));
     times.push(time / 1e6);
-    states.push(stateOf(now));
+    states.push({
+      ...stateOf(now),
+      position: latest.position.between(time, ["x", "y", "z"]),
+      velocity: latest.position.between(time, ["vx", "vy", "vz"]),
+      ...tracked(latest.setpoint.between(time, ["x", "y", "z"])),
+    });
   }
   return { times, states: new Map([[1, states]]) };
 }
 
-function stateOf({ position, attitude, setpoint, status, land, battery, wind }) {
-  const three = (row, names) => names.map((name) => (row ? row(name) : NaN));
-  const target = three(setpoint, ["x", "y", "z"]);
+function tracked(setpoint) {
+  return { setpoint, tracks: setpoint.every(Number.isFinite) };
+}
+
+function stateOf({ attitude, status, land, battery, wind, controllers }) {
+  const each = (row, names) => names.map((name) => (row ? row(name) : NaN));
   const turned = attitude?.("q") ?? [];
-  const air = three(wind, ["windspeed_north", "windspeed_east"]);
+  const air = each(wind, ["windspeed_north", "windspeed_east"]);
   return unknown({
-    position: three(position, ["x", "y", "z"]),
-    velocity: three(position, ["vx", "vy", "vz"]),
     quaternion: turned.length === 4 && turned.every(Number.isFinite) ? turned : [1, 0, 0, 0],
-    setpoint: target,
-    tracks: target.every(Number.isFinite),
+    thrust: controllers ? controllers("thrust_n") : NaN,
+    status: each(controllers, LAWS.map((law) => `${law}_status`)),
+    active: each(controllers, LAWS.map((law) => `${law}_active_constraints`)),
+    iterations: each(controllers, LAWS.map((law) => `${law}_iterations`)),
     armed: status?.("arming_state") === 2,
     failsafe: status?.("failsafe") === 1,
     landed: land?.("landed") === 1,
