@@ -86,7 +86,8 @@ fn a_lost_rotor_is_told_and_it_comes_down_spinning() {
         bench.fly(3.0);
         assert_eq!(bench.autopilot.vehicle().landed_state(), LandedState::OnGround);
         assert!(tilt_rad(&bench) < 0.02 && bench.position()[2].abs() < 0.02, "{:?}", bench.position());
-        // Until it is mended it does not fly again.
+        // Until it is mended it does not fly again, whatever the mode.
+        assert_eq!(bench.set_mode(Mode::Position), 0, "{:?}", bench.texts());
         assert_eq!(obstacles(&bench), ["rotor 2 failed"]);
         assert_eq!(inject(&mut bench, MOTOR, OK, 0.0), 0);
         assert!(bench.autopilot.vehicle().arming_obstacles().is_empty());

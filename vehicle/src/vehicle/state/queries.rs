@@ -211,6 +211,8 @@ impl Vehicle {
         let (climbs, descends) = self.machines.mission.is_vertical();
         match self.mode() {
             _ if self.machines.landing.is_landed() => LandedState::OnGround,
+            // Its mode may stay that of a landing that has ended.
+            _ if !self.is_armed() => LandedState::InAir,
             Mode::Mission if climbs => LandedState::TakingOff,
             Mode::Mission if descends => LandedState::Landing,
             Mode::Mission if self.machines.mission.returns() && self.machines.return_home.descends() => {
