@@ -140,7 +140,7 @@ def wait(connection, kind: str, condition=lambda message: True, seconds: float =
         message = connection.recv_match(type=kind, blocking=True, timeout=left)
         if message is not None and condition(message):
             return message
-    raise TimeoutError(f"no such {kind} within {seconds} s")
+    raise TimeoutError(f"no matching {kind} within {seconds} s")
 
 
 def take_off(connection):

@@ -44,8 +44,8 @@ pub struct TrialCost {
 }
 
 impl TrialCost {
-    /// Stage costs and violations together. A [`StabilizedMpc`](crate::StabilizedMpc) charges its plan for the worst violation once; this
-    /// charges every sample at which a limit is broken.
+    /// The sum of stage cost and violation cost. A [`StabilizedMpc`](crate::StabilizedMpc) penalizes the worst violation of its plan once;
+    /// this sum penalizes every sample at which a limit is violated.
     pub fn total(&self) -> f64 {
         self.stage_cost + self.violation_cost
     }

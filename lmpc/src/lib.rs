@@ -42,8 +42,8 @@
 //! ```
 //!
 //! Designs are made in `f64`. What flies is generic over its [`Precision`], the last parameter of its type, which defaults to `f64`:
-//! `to_precision` converts it, and serde saves it, so a microcontroller can load a finished design. Read only what serde saved: its indices
-//! are not checked.
+//! `to_precision` converts it, and serde saves it, so a microcontroller can load a finished design. Deserialize only what serde saved:
+//! indices are not checked.
 //!
 //! Every step of the design returns a [`DesignError`] when a precondition is violated. Of the const generics, N, P and Q
 //! are the numbers of states, inputs and outputs of the plant. E is the capacity of a program, at least its

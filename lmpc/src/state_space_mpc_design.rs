@@ -11,7 +11,7 @@ use crate::{Augmented, DesignError, Quantity, StateSpace, Weights, spectral_radi
 /// Design of a state-space MPC.
 ///
 /// The outputs over the horizon are Y = F x̂ + Φ U (32)–(33), without the
-/// [direct term](StateSpace#the-direct-term-d) D of (24). The unknowns are the first N_c moves Δu; the input stays where it is after them.
+/// [direct term](StateSpace#the-direct-term-d) D of (24). The unknowns are the first N_c moves Δu; after them, the input stays constant.
 /// U = 1 u₋₁ + T ΔU makes the cost (34) the quadratic form
 ///
 /// ```text

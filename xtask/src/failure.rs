@@ -56,8 +56,8 @@ pub enum Failure {
     },
     /// Some packages are built for one Python on one system.
     #[error(
-        "{what} is packaged for Python 3.11 on Linux (x86-64) only, and this is Python {version} on {system} ({architecture}): \
-         there, set the environment variable PYTHON to the path of a Python 3.11"
+        "{what} is packaged only for Python 3.11 on Linux (x86-64), but this is Python {version} on {system} ({architecture}): \
+         on Linux (x86-64), set the environment variable PYTHON to the path of a Python 3.11 interpreter"
     )]
     OtherPython {
         /// What is in the packages.

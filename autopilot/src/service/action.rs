@@ -176,11 +176,15 @@ fn switch_fence(context: &mut Context, command: &Command) -> Result<(), Refusal>
     let known = FenceSwitch::of_numbers(number, parts.unwrap_or(0.0));
     // PX4's fence has no floor.
     let Some(switch) = known.filter(|switch| is_ardupilot || *switch != FenceSwitch::FloorOff) else {
-        let floor =
-            if is_ardupilot { ", 2 disables its floor; parameter 2: parts as in FENCE_TYPE" } else { "" };
-        return Err(Refusal::denied(format!(
-            "Invalid value {number}: 1 enables the fence, 0 disables it{floor}"
-        )));
+        let floor = if is_ardupilot { ", 2 disables its floor" } else { "" };
+        let values = format!("1 enables the fence, 0 disables it{floor}");
+        return Err(Refusal::denied(match parts {
+            Some(parts) => {
+                let mask = "parameter 2 is a sum of FENCE_TYPE values, 0 to 15 (0: all parts)";
+                format!("Invalid values {number}, {parts}: {values}; {mask}")
+            }
+            None => format!("Invalid value {number}: {values}"),
+        }));
     };
     context.vehicle.switch_fence(switch);
     parameter::tell(context, "FENCE_ENABLE");

@@ -21,15 +21,17 @@ const STILL_RAD_S: f64 = 0.1;
 const STILL_M_S: f64 = 0.1;
 
 /// The radio: a ground station watches its pulses and sets parameters, and the vehicle heeds neither sticks nor switches until a command
-/// with nothing to calibrate ends that.
+/// with nothing to calibrate ends that, or until it is armed.
 const RADIO: &str = "radio";
+/// Its trims, which are taken at once.
+const TRIM: &str = "radio trim";
 /// Parameters of the command, and what they calibrate.
 const UNITS: [(usize, f64, &str); 8] = [
     (1, 1.0, "gyro"),
     (2, 1.0, "mag"),
     (3, 1.0, "baro"),
     (4, 1.0, RADIO),
-    (4, 2.0, RADIO),
+    (4, 2.0, TRIM),
     (5, 1.0, "accel"),
     (5, 2.0, "level"),
     // ArduPilot's simple calibration, on level ground.
@@ -102,11 +104,7 @@ impl Service for Calibrations {
         match unit.and_then(|unit| may_begin(&context.vehicle).map(|()| unit)) {
             Ok(RADIO) => {
                 context.vehicle.calibrate_radio(true);
-                say(
-                    context,
-                    Severity::Info,
-                    "calibration started: radio; sticks and switches are not heeded",
-                );
+                say(context, Severity::Info, "calibration started: radio; sticks and switches are ignored");
                 Ok(Progress::Done)
             }
             Ok(unit) => {

@@ -26,7 +26,7 @@ pub struct Greeting {
 
 impl Service for Greeting {
     fn summary(&self) -> &'static str {
-        "What it is, in words"
+        "Name and version as text"
     }
 
     fn commands(&self) -> &'static [CommandEntry] {

@@ -19,7 +19,7 @@ pub struct Shell;
 
 impl Service for Shell {
     fn summary(&self) -> &'static str {
-        "The shell, of which it says that there is none"
+        "Shell: the answer says that there is none"
     }
 
     fn messages(&self) -> &'static [u32] {

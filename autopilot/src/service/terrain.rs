@@ -25,7 +25,7 @@ pub struct Terrain;
 
 impl Service for Terrain {
     fn summary(&self) -> &'static str {
-        "Height of the flat ground; data that is sent changes nothing"
+        "Height of the flat ground; received terrain data is ignored"
     }
 
     fn messages(&self) -> &'static [u32] {

@@ -1,8 +1,8 @@
 //! The C names of the functions.
 
 /// Exports one or more [`Model`](crate::Model)s as an FMI 3.0 library: the functions of the interface under
-/// their C names. For the root of a crate of type `cdylib`, once, beside [`export_fmi2`](crate::export_fmi2) if the library shall serve
-/// both versions. The functions that make an instance find the model by its instantiation token.
+/// their C names. Call it once in the root of a crate of type `cdylib`, beside [`export_fmi2`](crate::export_fmi2) if the library is to
+/// serve both versions. The functions that make an instance find the model by its instantiation token.
 #[macro_export]
 macro_rules! export_fmi3 {
     ($($model:ty),+ $(,)?) => {

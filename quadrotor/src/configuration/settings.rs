@@ -157,8 +157,8 @@ pub struct Controllers {
     /// Position controller on (15), inputs θ, φ for outputs x, y. Below it is the closed attitude loop.
     pub position: ControllerSettings<2>,
     /// Attitude controller on (23) with the rotors' lag, outputs φ, θ, ψ. Its inputs are angular accelerations, J⁻¹ τ, so that
-    /// its weights do not depend on the vehicle. Roll and pitch have one bandwidth ω, yaw has another one; a, N_p, α and λ are those of
-    /// roll and pitch, and yaw has them in its own time.
+    /// its weights do not depend on the vehicle. Roll and pitch share one bandwidth ω, yaw has its own; a, N_p, α and λ are those of
+    /// roll and pitch, and yaw has them on its own time scale.
     pub attitude: ControllerSettings<3>,
 }
 

@@ -139,8 +139,12 @@ impl Cascade {
             let attitude = design.attitude_loop();
             let followed = self.turned.follow(configuration, attitude.as_ref(), (reference, seen), time_us);
             if followed.is_some() {
+                // A goal at rest ends both.
+                (self.narrowed, self.followed) = (NarrowedWay::default(), FollowedWay::default());
                 return followed;
             }
+        } else {
+            self.turned = TurnedWay::default();
         }
         let narrowed = self.narrowed.follow(configuration, reference, time_us);
         let way = narrowed.as_ref().unwrap_or(reference);

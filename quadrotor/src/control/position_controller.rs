@@ -24,8 +24,8 @@ use crate::{CascadeDesign, Configuration};
 const BRAKING_SHARE: f64 = 0.25;
 
 /// Samples ahead at which it is looked what the reference will ask for, as far as its motion is limited: a reference that will be too fast
-/// for the limit would be run ahead of. From the fourth on, but for the last, they are those at which the speed is limited: a speed that
-/// comes and goes between them is not missed. What is only foreseen to turn may also go straight on.
+/// for the limit would be run ahead of. From the fourth on, but for the last, they are those at which the speed is limited with samples
+/// of 50 ms or less: a speed that comes and goes between them is not missed. What is only foreseen to turn may also go straight on.
 const ASKED: [usize; 9] = [5, 10, 15, 20, 26, 34, 50, 80, 110];
 /// So many of them until what goes straight on does not speed up any more.
 const FADED: usize = 4;

@@ -174,7 +174,7 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("SERVO_BLH_AUTO", 0, 0..=1, "", "Digital motor controllers on all motors"),
         ("SERVO_GPIO_MASK", 0, 0..=16777215, "", "Outputs that are pins"),
     ]),
-    kept!(ArduPilot, "other rates have an effect; clients ask for these themselves (SET_MESSAGE_INTERVAL)", real [], whole [
+    kept!(ArduPilot, "only the other SRn_ rates have one; clients request these with SET_MESSAGE_INTERVAL", real [], whole [
         ("SR0_ADSB", 4, 0..=50, "Hz", "Rate of traffic on link 0"),
         ("SR0_PARAMS", 10, 0..=50, "Hz", "Rate of parameters on link 0"),
         ("SR0_RAW_CTRL", 4, 0..=50, "Hz", "Rate of controllers on link 0"),

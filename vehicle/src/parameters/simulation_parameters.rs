@@ -51,7 +51,8 @@ fn come_from(conduct: &Conduct) -> [f64; 2] {
         conduct.simulated.wind_from_deg.unwrap_or(WIND_FROM_DEG).to_radians(),
     );
     // What is left of rounding is no wind.
-    [cos(from_rad), sin(from_rad)].map(|share| if share.abs() < 1e-12 { 0.0 } else { speed_m_s * share })
+    let is_none = |share: f64| speed_m_s == 0.0 || share.abs() < 1e-12;
+    [cos(from_rad), sin(from_rad)].map(|share| if is_none(share) { 0.0 } else { speed_m_s * share })
 }
 
 /// Lets it come from there; `false` if it is stronger than the wind may be.

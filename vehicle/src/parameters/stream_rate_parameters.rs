@@ -22,7 +22,7 @@ macro_rules! rate {
                 $what,
                 " on link ",
                 $link,
-                "; until it is set, each message has its own"
+                "; until it is first changed, each message has its own rate"
             ),
             ..whole!("", 0..=50, told_loops, u8, "")
         }

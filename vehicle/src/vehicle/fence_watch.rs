@@ -86,7 +86,12 @@ impl FenceWatch {
 
     /// Somebody switches a fence that is on or not, and consists of these parts. Returns whether it is on after that.
     pub fn switch(&mut self, switch: FenceSwitch, is_on: bool, parts: FenceParts) -> bool {
-        self.floor_is_off = switch == FenceSwitch::FloorOff;
+        self.floor_is_off = match switch {
+            FenceSwitch::FloorOff => true,
+            FenceSwitch::PartsOff(_) => self.floor_is_off,
+            FenceSwitch::PartsOn(bits) => self.floor_is_off && !FenceParts::from_bits(bits).floor,
+            FenceSwitch::On | FenceSwitch::Off => false,
+        };
         let on = match switch {
             FenceSwitch::Off => false,
             FenceSwitch::On => {
@@ -96,7 +101,7 @@ impl FenceWatch {
             FenceSwitch::FloorOff => is_on,
             FenceSwitch::PartsOn(bits) => {
                 self.parts_off = if is_on { self.parts_off & !bits } else { !bits };
-                true
+                parts.bits() & !self.parts_off != 0
             }
             FenceSwitch::PartsOff(bits) => {
                 self.parts_off |= bits;
@@ -115,6 +120,9 @@ impl FenceWatch {
     /// Switches the fence on or off by itself, and its floor: a vehicle that starts or lands is below that.
     fn start(&mut self, situation: &Situation) {
         let settings = &situation.conduct.failsafe;
+        if !situation.fence_is_on {
+            self.parts_off = 0;
+        }
         let in_the_air = situation.armed && !situation.landed;
         let wanted = match settings.fence_starts {
             FenceStart::Never => false,
@@ -392,6 +400,7 @@ mod tests {
         assert_eq!((at(25.0, None), at(19.0, None)), (None, Some(Breach::Floor(20.0))));
         assert_eq!(at(19.0, Some(FenceSwitch::FloorOff)), None);
         assert_eq!((at(25.0, None), at(19.0, None)), (None, None));
+        assert_eq!((at(25.0, Some(FenceSwitch::PartsOff(1))), at(19.0, None)), (None, None));
         assert_eq!((at(25.0, Some(FenceSwitch::On)), at(19.0, None)), (None, Some(Breach::Floor(20.0))));
     }
 
@@ -408,6 +417,7 @@ mod tests {
             (FenceSwitch::PartsOff(7), true, false, 0),
             (FenceSwitch::PartsOn(2), false, true, !2),
             (FenceSwitch::PartsOff(2), true, false, 0),
+            (FenceSwitch::PartsOn(8), false, false, 0),
         ] {
             assert_eq!(watch.switch(switch, was_on, parts), is_on, "{switch:?}");
             assert_eq!(watch.parts_off(), off, "{switch:?}");

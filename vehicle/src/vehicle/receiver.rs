@@ -122,8 +122,9 @@ impl Receiver {
         self.take_overrides(&pulses, time_us);
     }
 
-    /// It is armed: a pilot who is not there then is not needed until he comes back.
+    /// It is armed: a pilot who is not there then is not needed until he comes back, and a calibration is over.
     pub fn arm(&mut self) {
+        self.calibrating = false;
         self.optional = self.now.lost;
     }
 
@@ -143,16 +144,7 @@ impl Receiver {
     ) {
         let pulses = self.pulses(identity, settings, timeout_s, time_us);
         if self.calibrating {
-            let believed = self.now.believed;
-            let has_radio = self.now.has_radio || pulses.is_some();
-            self.now = Pilot {
-                pulses,
-                believed,
-                has_radio,
-                is_doubted: true,
-                is_calibrating: true,
-                ..Pilot::default()
-            };
+            self.now = self.calibrated(pulses);
             return;
         }
         let young = |taken_us: u64| time_us.saturating_sub(taken_us) <= (timeout_s * 1e6) as u64;
@@ -195,6 +187,18 @@ impl Receiver {
             has_radio: ever,
             is_calibrating: false,
         };
+    }
+
+    /// The pilot while the radio is calibrated: its pulses alone.
+    fn calibrated(&self, pulses: Option<Pulses>) -> Pilot {
+        Pilot {
+            pulses,
+            believed: self.now.believed,
+            has_radio: self.now.has_radio || pulses.is_some(),
+            is_doubted: true,
+            is_calibrating: true,
+            ..Pilot::default()
+        }
     }
 
     /// The pulses that count, if there are any.

@@ -4,7 +4,7 @@ use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{MESSAGE_INTERVAL_DATA, MavCmd, MavMessage};
 use vehicle::{Refusal, StreamRates};
 
-use super::schedule::Schedule;
+use super::schedule::{Interval, Schedule};
 use crate::codec::{Command, Frame, id};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin, PeerId};
@@ -127,18 +127,19 @@ impl MessageIntervals {
         let link = origin.peer.link;
         let stream = context.streams.get(number).filter(|stream| stream.is_regular()).ok_or_else(unknown)?;
         let schedule = self.links.get_mut(link).ok_or_else(unknown)?;
-        let interval_us = match command.parameter(2) {
+        let interval = match command.parameter(2) {
             value if value.is_nan() => return Err(unknown()),
-            0.0 => schedule.default_interval_us(stream),
-            interval_us => (interval_us > 0.0).then_some(interval_us as u64),
+            0.0 => Interval::Default,
+            interval_us if interval_us > 0.0 => Interval::Each(interval_us as u64),
+            _ => Interval::Never,
         };
-        let per_s = schedule.per_s_with(stream, interval_us);
+        let per_s = schedule.per_s_with(stream, schedule.resolved_us(stream, interval));
         if per_s > MOST_PER_S {
             return Err(Refusal::denied(format!(
                 "Message interval denied: {per_s:.0} messages/s on this link; at most {MOST_PER_S}"
             )));
         }
-        schedule.set(origin.peer, stream, interval_us, context.vehicle.time_us());
+        schedule.set(origin.peer, stream, interval, context.vehicle.time_us());
         Ok(())
     }
 
@@ -181,10 +182,14 @@ impl MessageIntervals {
         let Some(schedule) = self.links.get_mut(origin.peer.link) else { return };
         // All streams of the table at this interval are what a link carries.
         let least_us = (context.streams.iter().count() as f64 * 1e6 / MOST_PER_S) as u64;
-        let interval_us = (start && rate_hz > 0).then(|| (1_000_000 / u64::from(rate_hz)).max(least_us));
+        let interval = if start && rate_hz > 0 {
+            Interval::Each((1_000_000 / u64::from(rate_hz)).max(least_us))
+        } else {
+            Interval::Never
+        };
         for group in Group::ALL.into_iter().filter(|group| number == 0 || number == *group as u8) {
             for stream in context.streams.iter().filter(|stream| stream.group == Some(group)) {
-                schedule.set(origin.peer, stream, interval_us, context.vehicle.time_us());
+                schedule.set(origin.peer, stream, interval, context.vehicle.time_us());
             }
         }
     }

@@ -16,12 +16,23 @@ struct Regular {
     due_us: u64,
 }
 
-/// An interval that a peer has asked for; `None`: never.
+/// An interval that a peer has asked for.
 #[derive(Clone, Copy, Debug)]
 struct Wish {
     peer: PeerId,
     stream: &'static Stream,
-    interval_us: Option<u64>,
+    interval: Interval,
+}
+
+/// How often a message is to be sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interval {
+    /// As often as if nobody asked.
+    Default,
+    /// Every so many µs.
+    Each(u64),
+    /// Never.
+    Never,
 }
 
 /// The messages of one link, in the order in which they were asked for. The latest wish for a message counts, as long as whoever has it
@@ -68,8 +79,7 @@ impl Schedule {
         let before = std::mem::replace(&mut self.rates, rates);
         for stream in streams {
             let is_other = |group| rate_hz(&before, group) != rate_hz(&rates, group);
-            let is_asked_for = self.wishes.iter().any(|wish| wish.stream.id == stream.id);
-            if stream.group.is_some_and(is_other) && !is_asked_for {
+            if stream.group.is_some_and(is_other) && self.wish(stream) == Interval::Default {
                 self.apply(stream, self.default_interval_us(stream), time_us);
             }
         }
@@ -87,11 +97,26 @@ impl Schedule {
         intervals_us.map(|interval_us| 1e6 / interval_us as f64).sum()
     }
 
-    /// A peer wants a message at an interval, µs, or never.
-    pub fn set(&mut self, peer: PeerId, stream: &'static Stream, interval_us: Option<u64>, time_us: u64) {
+    /// The latest wish for a message.
+    fn wish(&self, stream: &Stream) -> Interval {
+        let latest = self.wishes.iter().rfind(|wish| wish.stream.id == stream.id);
+        latest.map_or(Interval::Default, |wish| wish.interval)
+    }
+
+    /// The interval that a wish stands for now, µs; `None`: never.
+    pub fn resolved_us(&self, stream: &Stream, interval: Interval) -> Option<u64> {
+        match interval {
+            Interval::Default => self.default_interval_us(stream),
+            Interval::Each(interval_us) => Some(interval_us),
+            Interval::Never => None,
+        }
+    }
+
+    /// A peer wants a message at an interval.
+    pub fn set(&mut self, peer: PeerId, stream: &'static Stream, interval: Interval, time_us: u64) {
         self.wishes.retain(|wish| (wish.peer, wish.stream.id) != (peer, stream.id));
-        self.wishes.push(Wish { peer, stream, interval_us });
-        self.apply(stream, interval_us, time_us);
+        self.wishes.push(Wish { peer, stream, interval });
+        self.apply(stream, self.resolved_us(stream, interval), time_us);
     }
 
     /// Forgets what peers wanted that are gone: what others want counts again, or the rate at the start.
@@ -101,9 +126,7 @@ impl Schedule {
         self.wishes = wishes;
         let gone: Vec<Wish> = gone;
         for Wish { stream, .. } in gone {
-            let latest = self.wishes.iter().rfind(|wish| wish.stream.id == stream.id);
-            let interval_us =
-                latest.map_or_else(|| self.default_interval_us(stream), |wish| wish.interval_us);
+            let interval_us = self.resolved_us(stream, self.wish(stream));
             if interval_us.map(allowed) != self.interval_us(stream.id) {
                 self.apply(stream, interval_us, time_us);
             }

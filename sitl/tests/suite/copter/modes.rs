@@ -1,7 +1,10 @@
 //! Modes: what they refuse, and what they tell.
 
 use super::flier::*;
+use crate::common::settings;
 use mavlink::dialects::ardupilotmega::*;
+use vehicle::identity::Identity;
+use vehicle::plan::{Plan, PlanKind};
 
 const ACRO: u32 = 1;
 const CIRCLE: u32 = 7;
@@ -235,4 +238,25 @@ fn auto_stays_after_its_landing() {
             assert_eq!(flier.mode(), AUTO, "after {last}");
         }
     }
+}
+
+/// A mission that is flown anew without leaving its mode keeps to the speeds of its items.
+#[test]
+fn speeds_of_a_mission_hold_when_auto_is_armed_again() {
+    let mut start = settings(Identity::ArduPilot);
+    let rows = [(22, 0.0, 0.0, 8.0), (178, 0.0, 0.0, 0.0), (16, 60.0, 0.0, 8.0)];
+    let mut items = mission(&start, &rows).items().to_vec();
+    items[2].parameters = [1.0, 2.0, -1.0, 0.0];
+    start.plans.set(PlanKind::Mission, Plan::new(items));
+    let mut flier = Flier::with(&start);
+    flier.set("AUTO_OPTIONS", 3.0);
+    flier.change_mode(AUTO);
+    flier.arm();
+    let by_force = [0.0, 21196.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, by_force), ACCEPTED);
+    flier.fly(1.0);
+    assert_eq!(flier.mode(), AUTO);
+    flier.arm();
+    flier.wait("the way", 60.0, |flier| flier.distance_m() > 20.0);
+    assert!((flier.speed_m_s() - 2.0).abs() < 0.1, "{} m/s", flier.speed_m_s());
 }

@@ -40,6 +40,8 @@ fn rates_of_groups_follow_their_parameters() {
     let default = [ATTITUDE_DATA::ID as f32, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     assert_eq!(flier.command(MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, default), ACCEPTED);
     check_attitudes(&mut flier, 10, "the default is that of the parameter");
+    flier.set("SR0_EXTRA1", 20.0);
+    check_attitudes(&mut flier, 20, "and stays so");
     flier.set("SR0_EXT_STAT", 0.0);
     assert_eq!(per_second(&mut flier, |message| matches!(message, MavMessage::SYS_STATUS(_))), 0);
 }
@@ -151,4 +153,22 @@ fn a_radio_is_calibrated_without_steering() {
     assert_eq!(flier.obstacles(), ["PreArm: RC calibrating"]);
     assert_eq!(flier.command(MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, [0.0; 7]), ACCEPTED);
     flier.wait("armed by the rudder", 4.0, |flier| flier.is_armed());
+}
+
+/// Trims leave the radio as it is, and who arms by force ends a calibration.
+#[test]
+fn a_radio_steers_after_its_trims_and_once_it_is_armed() {
+    let mut flier = Flier::new();
+    flier.change_mode(STABILIZE);
+    let trims = [0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, trims), ACCEPTED);
+    flier.fly(0.1);
+    assert!(flier.obstacles().is_empty());
+    let radio = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_PREFLIGHT_CALIBRATION, radio), ACCEPTED);
+    flier.fly(0.1);
+    let by_force = [1.0, 2989.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, by_force), ACCEPTED);
+    flier.rc(3, 1900);
+    flier.wait("a climb by the stick", 5.0, |flier| flier.height_m() > 1.0);
 }

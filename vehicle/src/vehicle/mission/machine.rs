@@ -253,6 +253,13 @@ impl Mission {
         }
     }
 
+    /// The vehicle is armed in its mode, which may have stayed from the flight before.
+    pub fn arm(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        if self.progress != Progress::Complete {
+            self.take_over(situation, proposal);
+        }
+    }
+
     /// Its mode is left.
     pub fn leave(&mut self, proposal: &mut Proposal) {
         (self.paused, self.lands) = (false, false);

@@ -104,6 +104,9 @@ impl Vehicle {
             if !situation.home.set_by_user && situation.landed {
                 proposal.move_home_here(situation);
             }
+            if situation.mode == Mode::Mission {
+                parts.mission.arm(situation, proposal);
+            }
             proposal.idle(situation);
             if !situation.landed {
                 proposal.follow(situation, &PositionSetPoint::HOLD);

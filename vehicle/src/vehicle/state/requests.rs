@@ -131,7 +131,7 @@ impl Vehicle {
                 return;
             }
             // The rest stays on, by hand or by itself.
-            FenceSwitch::PartsOff(_) if enabled => return,
+            FenceSwitch::PartsOff(_) | FenceSwitch::PartsOn(_) if enabled && is_on => return,
             _ => {}
         }
         let mut conduct = *self.conduct();
