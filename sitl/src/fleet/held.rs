@@ -61,6 +61,7 @@ impl Held {
     /// The effect of a message of a peer has cost this much.
     pub fn charge(&mut self, peer: PeerId, cost: Duration) {
         self.turns.charge(peer, cost);
+        self.turns.expect(peer, cost);
     }
 }
 

@@ -114,11 +114,11 @@ impl Fleet {
         let Some(turn) = turn else { return false };
         // What signing must remember is kept before what it has accepted takes effect.
         self.keep_signing(hub, now);
-        if let Some(received) = turn.received {
-            self.distribute(hub, &received, now);
+        if let Some(received) = &turn.received {
+            self.distribute(hub, received, now);
         }
         if let Some(links) = self.hubs.get_mut(hub) {
-            links.charge(turn.peer, start.elapsed());
+            links.charge(turn.peer, start.elapsed(), turn.received.is_some());
         }
         true
     }

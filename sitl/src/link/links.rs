@@ -245,9 +245,13 @@ impl Links {
         Some(Turn { peer: id, received })
     }
 
-    /// A turn has cost this much.
-    pub fn charge(&mut self, peer: PeerId, cost: Duration) {
+    /// A turn has cost this much; `message`: it was one that a message was taken in.
+    pub fn charge(&mut self, peer: PeerId, cost: Duration, message: bool) {
         self.turns.charge(peer, cost);
+        // One that has only decoded a part of a stream tells nothing of what comes.
+        if message {
+            self.turns.expect(peer, cost);
+        }
     }
 }
 

@@ -319,7 +319,7 @@ fn served(links: &mut Links, turns: usize) -> Vec<usize> {
     let now = Instant::now();
     let served = (0..turns).filter_map(|_| {
         let turn = links.take_turn(now, |_| true)?;
-        links.charge(turn.peer, Duration::from_micros(1_500));
+        links.charge(turn.peer, Duration::from_micros(1_500), turn.received.is_some());
         turn.received.map(|received| received.origin.peer.link)
     });
     served.collect()
