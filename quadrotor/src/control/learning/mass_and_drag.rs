@@ -209,8 +209,10 @@ impl MassAndDrag {
     fn learn(&mut self, configuration: &Configuration, terms: &Terms, interval_s: f64) {
         let prior = &prior(configuration);
         let noise_m_s2 = noise_m_s2(&configuration.sensors, interval_s);
-        let change_m_s2 = self.change_m_s2(terms);
-        self.watch_gusts(terms, (noise_m_s2, interval_s));
+        let rows = [0, 1, 2].map(|axis| row(terms, axis));
+        let unexplained_m_s2 = self.innovation(&rows, terms);
+        let change_m_s2 = unexplained_m_s2 + self.change_of_force_m_s2(terms);
+        self.watch_gusts(&rows, unexplained_m_s2.xy().norm(), (noise_m_s2, interval_s));
         let surprise_m_s2 = SURPRISE_M_S2 + SURPRISE_DEVIATIONS * noise_m_s2 + GUST_SWINGS * self.gusts_m_s2;
         if self.settling_s == 0.0 && libm::fabs(change_m_s2.z) > surprise_m_s2 {
             // What the filter remembers is of before. Drag does not jump.
@@ -227,31 +229,30 @@ impl MassAndDrag {
         self.estimate.forget(prior, interval_s);
         // Filtered equations repeat one another for as long as the filter remembers.
         let repeated = (2.0 * MEMORY_S / interval_s).max(1.0);
-        for (axis, deviation) in [noise_m_s2, noise_m_s2, along_m_s2].into_iter().enumerate() {
-            let measured = (terms.specific_force_m_s2[axis], deviation * deviation * repeated);
-            self.estimate.update(prior, &learned, &row(terms, axis), measured);
+        let deviations = [noise_m_s2, noise_m_s2, along_m_s2];
+        for ((row, force_m_s2), deviation) in rows.iter().zip(&terms.specific_force_m_s2).zip(deviations) {
+            self.estimate.update(prior, &learned, row, (*force_m_s2, deviation * deviation * repeated));
         }
         let share = if self.settling_s > 0.0 { 1.0 } else { -libm::expm1(-interval_s / STEADY_FORCE_S) };
         self.steady_force_m_s2 += (self.force_m_s2() - self.steady_force_m_s2) * share;
     }
 
-    /// Takes a change of the force across the thrust for a gust, as far as it is not a drag that is still to be learned. What a flight
-    /// begins with is no gust.
-    fn watch_gusts(&mut self, terms: &Terms, (noise_m_s2, interval_s): (f64, f64)) {
+    /// Takes what is not explained of the force across the thrust for a gust, as far as it is not a drag that is still to be learned.
+    /// What a flight begins with is no gust.
+    fn watch_gusts(&mut self, rows: &[Unknowns; 3], across_m_s2: f64, (noise_m_s2, interval_s): (f64, f64)) {
         let drag_m_s2 =
-            (0..2).map(|axis| self.estimate.deviation(&drag_row(terms, axis))).fold(0.0, f64::max);
+            rows[..2].iter().map(|row| self.estimate.deviation(&drag_part(row))).fold(0.0, f64::max);
         let expected_m_s2 = SURPRISE_DEVIATIONS * noise_m_s2 + DRAG_DEVIATIONS * drag_m_s2;
         let begins = self.settling_s > SETTLING_S - BEGINNING_S;
-        let change_m_s2 = if begins { 0.0 } else { self.innovation(terms).xy().norm() };
+        let change_m_s2 = if begins { 0.0 } else { across_m_s2 };
         let gust_m_s2 = change_m_s2 - expected_m_s2;
         let fading_m_s2 = self.gusts_m_s2 * libm::exp(-interval_s / GUSTY_S);
         self.gusts_m_s2 = gust_m_s2.max(fading_m_s2).min(MOST_FORCE_M_S2);
     }
 
-    /// By how much the acceleration differs from what mass, drag and the force of the last seconds explain, FRD, m/s².
-    fn change_m_s2(&self, terms: &Terms) -> Vector3<f64> {
-        let change = terms.in_body * (self.force_m_s2() - self.steady_force_m_s2);
-        self.innovation(terms) + change
+    /// By how much forces differ from the force of the last seconds, FRD, m/s².
+    fn change_of_force_m_s2(&self, terms: &Terms) -> Vector3<f64> {
+        terms.in_body * (self.force_m_s2() - self.steady_force_m_s2)
     }
 
     /// Acceleration by forces beside thrust and drag, NED, m/s².
@@ -260,10 +261,8 @@ impl MassAndDrag {
     }
 
     /// What the estimate does not explain of an equation, m/s².
-    fn innovation(&self, terms: &Terms) -> Vector3<f64> {
-        Vector3::from_fn(|axis, _| {
-            self.estimate.innovation(&row(terms, axis), terms.specific_force_m_s2[axis])
-        })
+    fn innovation(&self, rows: &[Unknowns; 3], terms: &Terms) -> Vector3<f64> {
+        Vector3::from_fn(|axis, _| self.estimate.innovation(&rows[axis], terms.specific_force_m_s2[axis]))
     }
 
     /// Whether a learner can have been in this state: saved states may come from anywhere.
@@ -295,10 +294,9 @@ fn row(terms: &Terms, axis: usize) -> Unknowns {
     row
 }
 
-/// The same of drag alone.
-fn drag_row(terms: &Terms, axis: usize) -> Unknowns {
-    let whole = row(terms, axis);
-    Unknowns::from_fn(|unknown, _| if (1..4).contains(&unknown) { whole[unknown] } else { 0.0 })
+/// What is of drag in such a row.
+fn drag_part(row: &Unknowns) -> Unknowns {
+    Unknowns::from_fn(|unknown, _| if (1..4).contains(&unknown) { row[unknown] } else { 0.0 })
 }
 
 /// Forces are always learned, mass and drag where they show.
