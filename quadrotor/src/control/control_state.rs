@@ -389,12 +389,12 @@ impl ControlState {
         let followed = self.cascade.follow(configuration, cascade, (&given, seen), time_us);
         let now = followed.unwrap_or(given);
         let foretold = followed.and_then(|_| self.cascade.foretold_way());
+        let later_s = |then_us: u64| then_us.saturating_sub(time_us) as f64 / 1e6;
         let ahead = |guidance: &Guidance, then_us: u64| match (&followed, &foretold) {
             (None, _) => guidance.preview(then_us),
             (_, Some(way)) => guidance.heading(then_us).on(&way.at(&now, then_us)),
             (Some(followed), None) => {
-                let then_s = then_us.saturating_sub(time_us) as f64 / 1e6;
-                guidance.heading(then_us).on(&followed.foreseen_after(then_s))
+                guidance.heading(then_us).on(&followed.foreseen_after(later_s(then_us)))
             }
         };
         if due.position {
@@ -402,7 +402,7 @@ impl ControlState {
             let is_foretold = foretold.is_some() || (followed.is_none() && guidance.is_foretold());
             let expected = |then_us: u64| match &followed {
                 None => guidance.reference(then_us),
-                Some(followed) => followed.expected_after(then_us.saturating_sub(time_us) as f64 / 1e6),
+                Some(followed) => followed.expected_after(later_s(then_us)),
             };
             let asked = |then_us| (!is_foretold).then(|| expected(then_us));
             let references = (&now, |then_us| ahead(guidance, then_us), asked);
