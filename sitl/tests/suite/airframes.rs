@@ -1,10 +1,9 @@
 //! `--airframe`: each preset flies from takeoff to landing with limits, battery and hover thrust of its own.
 
 use crate::common::Bench;
+use crate::common::requests::local_target;
 use clap::Parser;
-use mavlink::dialects::ardupilotmega::{
-    MavCmd, MavFrame, MavMessage, PARAM_REQUEST_READ_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
-};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage, PARAM_REQUEST_READ_DATA};
 use quadrotor::{AirframePreset, Configuration};
 use sitl::configuration::{Arguments, Settings};
 use sitl::hil::{ActuatorControls, Mount, Rig, STEP_US};
@@ -20,18 +19,7 @@ fn vehicle(arguments: &[&str]) -> VehicleSettings {
 
 fn goal(position_m: [f32; 3]) -> MavMessage {
     let [x, y, z] = position_m;
-    MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-        x,
-        y,
-        z,
-        type_mask: mavlink::dialects::ardupilotmega::PositionTargetTypemask::from_bits_truncate(
-            0b1001_1111_1000,
-        ),
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        target_system: 1,
-        target_component: 1,
-        ..Default::default()
-    })
+    local_target(0b1001_1111_1000, [x, y, z], [0.0; 3])
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Failsafes, fence, the mission's landing and simple mode with ArduPilot's parameters, as its documentation has them.
 
 use crate::common::failsafe_bench::{lose_ground_station, set};
+use crate::common::requests::local_target;
 use crate::common::{Bench, settings};
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
@@ -128,14 +129,7 @@ fn a_weak_battery_returns_twice() {
 
 /// Leads a vehicle in the guided mode to a height above home, m.
 fn lead_to_height(bench: &mut Bench, height_m: f32) {
-    bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-        target_system: 1,
-        target_component: 1,
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        type_mask: PositionTargetTypemask::from_bits_truncate(0b1101_1111_1000),
-        z: -height_m,
-        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-    }));
+    bench.send(local_target(0b1101_1111_1000, [0.0, 0.0, -height_m], [0.0; 3]));
 }
 
 /// FENCE_ALT_MIN: below it after it has been above, the vehicle returns, and lands through it. DO_FENCE_ENABLE 2 switches it off, 1 on.

@@ -1,9 +1,8 @@
 //! What single features get right, and what went wrong where they met.
 
+use crate::common::requests::local_target;
 use crate::common::{Bench, settings};
-use mavlink::dialects::ardupilotmega::{
-    MavCmd, MavFrame, MavMessage, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
-};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage};
 use vehicle::estimation::{SensorModel, SensorSettings};
 use vehicle::identity::Identity;
 use vehicle::{Action, Mode, SteeringKind};
@@ -33,16 +32,7 @@ fn a_takeoff_that_is_called_off_on_the_ground_ends_there() {
 }
 
 fn velocity([vx, vy, vz]: [f32; 3]) -> MavMessage {
-    MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-        vx,
-        vy,
-        vz,
-        target_system: 1,
-        target_component: 1,
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        type_mask: PositionTargetTypemask::from_bits_truncate(0b1101_1100_0111),
-        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-    })
+    local_target(0b1101_1100_0111, [0.0; 3], [vx, vy, vz])
 }
 
 /// Pushed along the ground by its set-points a vehicle comes to lean on an edge: it lands all the same.

@@ -1,14 +1,13 @@
 //! ArduPilot's logs: their shape, when they begin and end, and what LOG_BITMASK chooses.
 
 use crate::common;
+use crate::common::requests::set_parameter;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
 use crate::common::Bench;
-use mavlink::dialects::ardupilotmega::{
-    MavCmd, MavFrame, MavMessage, MavParamType, OBSTACLE_DISTANCE_3D_DATA, PARAM_SET_DATA,
-};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavFrame, MavMessage, OBSTACLE_DISTANCE_3D_DATA};
 use sitl::files::LogFolder;
 use sitl::flight_log::{FlightLog, LogSettings, LogStart, MESSAGES};
 use vehicle::identity::Identity;
@@ -111,13 +110,7 @@ impl Logged {
     }
 
     fn set(&mut self, name: &str, value: f64) {
-        self.bench.send(MavMessage::PARAM_SET(PARAM_SET_DATA {
-            param_value: value as f32,
-            target_system: 1,
-            target_component: 1,
-            param_id: name.into(),
-            param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-        }));
+        self.bench.send(set_parameter(name, value as f32));
     }
 
     fn flight(&mut self) {

@@ -1,6 +1,7 @@
 //! Failsafes that follow one another, flicker, or leave a choice.
 
 use crate::common::failsafe_bench::*;
+use crate::common::requests::set_parameter_as;
 use crate::common::{Bench, settings};
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::estimation::SensorModel;
@@ -143,15 +144,7 @@ fn a_terminated_flight_is_told() {
 #[test]
 fn a_meaningless_choice_is_refused_with_those_that_there_are() {
     let mut bench = Bench::new(Identity::Px4);
-    let mut param_id = [0; 16];
-    param_id[..16].copy_from_slice(b"COM_ACT_FAIL_ACT");
-    bench.send(MavMessage::PARAM_SET(PARAM_SET_DATA {
-        param_value: f32::from_bits(1),
-        target_system: 1,
-        target_component: 1,
-        param_id: param_id.into(),
-        param_type: MavParamType::MAV_PARAM_TYPE_INT32,
-    }));
+    bench.send(set_parameter_as("COM_ACT_FAIL_ACT", f32::from_bits(1), MavParamType::MAV_PARAM_TYPE_INT32));
     let told = bench.texts().pop().expect("a reason");
     let reason = "COM_ACT_FAIL_ACT = 1; allowed 0 (Warn), 2 (Land), 4 (Terminate)";
     assert_eq!(told, reason);

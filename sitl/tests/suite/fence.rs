@@ -4,6 +4,7 @@ use crate::common::fence_bench::{
     DENIED, TEMPORARILY_REJECTED, forward, go_to, hovering, item, polygon, set_cast, square, there,
 };
 use crate::common::plan_client::{result, upload};
+use crate::common::requests::local_target;
 use crate::common::{Bench, settings};
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
@@ -372,15 +373,7 @@ fn who_enters_loiter_fast_stops_before_the_border() {
         if bench.position()[0] >= 29.0 {
             break;
         }
-        bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-            target_system: 1,
-            target_component: 1,
-            coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-            type_mask: PositionTargetTypemask::from_bits_truncate(0b1101_1100_0111),
-            vx: 4.0,
-            vy: 7.0,
-            ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-        }));
+        bench.send(local_target(0b1101_1100_0111, [0.0; 3], [4.0, 7.0, 0.0]));
         bench.fly(0.1);
         assert_eq!(bench.mode(), Mode::Offboard, "{:?}", bench.texts());
     }

@@ -1,10 +1,10 @@
 //! The vehicle's states, driven by messages in simulation time.
 
 use crate::common;
+use crate::common::requests;
 use crate::common::{Bench, settings};
 use mavlink::dialects::ardupilotmega::{
-    AttitudeTargetTypemask, COMMAND_INT_DATA, MANUAL_CONTROL_DATA, MavCmd, MavFrame, MavMessage,
-    SET_ATTITUDE_TARGET_DATA,
+    AttitudeTargetTypemask, MANUAL_CONTROL_DATA, MavCmd, MavFrame, MavMessage, SET_ATTITUDE_TARGET_DATA,
 };
 use vehicle::identity::Identity;
 use vehicle::{LandedState, Mode};
@@ -241,18 +241,7 @@ fn a_place_in_a_frame_that_is_not_global_is_refused() {
 /// DO_REPOSITION to 20 m north of the start, as COMMAND_INT.
 fn reposition(bench: &mut Bench, frame: MavFrame, altitude_m: f32) -> u8 {
     let place = bench.autopilot.vehicle().frame().to_geodetic(&nalgebra::Vector3::new(20.0, 0.0, 0.0));
-    let message = MavMessage::COMMAND_INT(COMMAND_INT_DATA {
-        command: MavCmd::MAV_CMD_DO_REPOSITION,
-        target_system: 1,
-        target_component: 1,
-        frame,
-        param1: -1.0,
-        param4: f32::NAN,
-        x: (place.latitude_deg * 1e7).round() as i32,
-        y: (place.longitude_deg * 1e7).round() as i32,
-        z: altitude_m,
-        ..COMMAND_INT_DATA::default()
-    });
+    let message = requests::reposition(&place, frame, altitude_m);
     bench.heard.clear();
     bench.send(message);
     bench.acks().last().expect("an answer").result

@@ -4,6 +4,7 @@
 
 use crate::common::Bench;
 use crate::common::plan_client::result;
+use crate::common::requests::{local_target, reposition};
 use autopilot::codec::{Message, MissionItemMessage, Target};
 use mavlink::dialects::ardupilotmega::*;
 use nalgebra::Vector3;
@@ -34,16 +35,7 @@ fn heading_deg(bench: &Bench) -> f64 {
 
 /// A velocity, NED, m/s, as a DroneKit script sends it: with FORCE_SET and without an acceleration.
 fn velocity(bench: &mut Bench, [vx, vy, vz]: [f32; 3]) {
-    bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-        target_system: 1,
-        target_component: 1,
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        type_mask: PositionTargetTypemask::from_bits_retain(0x0fc7),
-        vx,
-        vy,
-        vz,
-        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-    }));
+    bench.send(local_target(0x0fc7, [0.0; 3], [vx, vy, vz]));
 }
 
 /// MISSION_ITEM_INT, as DroneKit's `simple_goto` sends the older MISSION_ITEM: north and east of the origin, m, and a height above home, m.
@@ -177,18 +169,7 @@ fn a_commanded_speed_is_flown_as_it_is() {
     let mut px4 = Bench::hovering(Identity::Px4);
     let speed_m_s = fastest_m_s(&mut px4, |bench| {
         let place = vehicle(bench).frame().to_geodetic(&Vector3::new(120.0, -90.0, -10.0));
-        bench.send(MavMessage::COMMAND_INT(COMMAND_INT_DATA {
-            command: MavCmd::MAV_CMD_DO_REPOSITION,
-            target_system: 1,
-            target_component: 1,
-            frame: MavFrame::MAV_FRAME_GLOBAL,
-            param1: -1.0,
-            param4: f32::NAN,
-            x: (place.latitude_deg * 1e7).round() as i32,
-            y: (place.longitude_deg * 1e7).round() as i32,
-            z: place.altitude_m as f32,
-            ..COMMAND_INT_DATA::default()
-        }));
+        bench.send(reposition(&place, MavFrame::MAV_FRAME_GLOBAL, place.altitude_m as f32));
     });
     assert!((speed_m_s - 5.0).abs() < 0.01, "{speed_m_s}");
 }

@@ -1,10 +1,8 @@
 //! ArduPilot's attitudes from outside: GUIDED_NOGPS, and what the thrust of SET_ATTITUDE_TARGET asks for.
 
+use crate::common::requests::local_target;
 use crate::common::{Bench, settings};
-use mavlink::dialects::ardupilotmega::{
-    AttitudeTargetTypemask, MavFrame, MavMessage, PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA,
-    SET_POSITION_TARGET_LOCAL_NED_DATA,
-};
+use mavlink::dialects::ardupilotmega::{AttitudeTargetTypemask, MavMessage, SET_ATTITUDE_TARGET_DATA};
 use nalgebra::{UnitQuaternion, Vector3};
 use vehicle::Mode;
 use vehicle::identity::Identity;
@@ -32,15 +30,7 @@ fn guided_without_gps_takes_attitudes_only() {
     assert_eq!(bench.set_mode(Mode::GuidedAttitude), 0);
     assert_eq!(bench.autopilot.identity().custom_mode(bench.mode()), 20);
     bench.heard.clear();
-    bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-        x: 20.0,
-        z: -10.0,
-        target_system: 1,
-        target_component: 1,
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        type_mask: PositionTargetTypemask::from_bits_retain(0xdf8),
-        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-    }));
+    bench.send(local_target(0xdf8, [20.0, 0.0, -10.0], [0.0; 3]));
     bench.fly(3.0);
     let [x, _, z] = bench.position();
     assert!(x.abs() < 0.5 && (z + 10.0).abs() < 0.2, "{:?}", bench.position());

@@ -2,10 +2,8 @@
 //!
 //! Two vehicles fly the same flight until one of them gets another set-point: their motors are commanded alike until it acts.
 
-use mavlink::dialects::ardupilotmega::{
-    AttitudeTargetTypemask, MavFrame, MavMessage, PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA,
-    SET_POSITION_TARGET_LOCAL_NED_DATA,
-};
+use crate::common::requests::local_target;
+use mavlink::dialects::ardupilotmega::{AttitudeTargetTypemask, MavMessage, SET_ATTITUDE_TARGET_DATA};
 use vehicle::identity::Identity;
 use vehicle::{Mode, TICK_US};
 
@@ -28,14 +26,7 @@ fn thrust(changed: bool) -> MavMessage {
 
 /// A velocity down, with a heading.
 fn velocity(changed: bool) -> MavMessage {
-    MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-        target_system: 1,
-        target_component: 1,
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        type_mask: PositionTargetTypemask::from_bits_retain(0b100111000111),
-        vz: if changed { -1.0 } else { 0.0 },
-        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-    })
+    local_target(0b100111000111, [0.0; 3], [0.0, 0.0, if changed { -1.0 } else { 0.0 }])
 }
 
 /// On the ground, armed, with too little thrust to lift off.

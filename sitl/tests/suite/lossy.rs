@@ -1,11 +1,12 @@
 //! Protocols over a channel that loses, duplicates and reorders, with the clients' retries, in simulation time.
 
+use crate::common::requests::set_parameter;
 use std::collections::BTreeMap;
 
 use crate::common::Bench;
 use crate::common::channel::Lossy;
 use mavlink::dialects::ardupilotmega::{
-    MavCmd, MavMessage, MavParamType, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
+    MavCmd, MavMessage, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA,
 };
 use vehicle::identity::Identity;
 
@@ -68,13 +69,7 @@ fn all_parameters_arrive_right() {
 fn a_parameter_is_set_and_read_back() {
     for seed in 10..=20 {
         let mut lossy = Lossy::new(seed);
-        let set = MavMessage::PARAM_SET(PARAM_SET_DATA {
-            param_value: 3.25,
-            target_system: 1,
-            target_component: 1,
-            param_id: "LIM_SPEED_HORIZ".into(),
-            param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-        });
+        let set = set_parameter("LIM_SPEED_HORIZ", 3.25);
         let mut confirmed = false;
         for _ in 0..10 {
             lossy.send(set.clone());

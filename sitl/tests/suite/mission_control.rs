@@ -7,10 +7,9 @@ use crate::common::Bench;
 use crate::common::mission_flight::{Flight, SQUARE, at, simple, takeoff, waypoint};
 use crate::common::plan_client::{count_message, item_message, result, upload};
 use crate::common::recording::Recording;
+use crate::common::requests::set_parameter;
 use autopilot::codec::Message;
-use mavlink::dialects::ardupilotmega::{
-    MISSION_SET_CURRENT_DATA, MavCmd, MavMessage, MavParamType, PARAM_SET_DATA,
-};
+use mavlink::dialects::ardupilotmega::{MISSION_SET_CURRENT_DATA, MavCmd, MavMessage};
 use vehicle::identity::Identity;
 use vehicle::parameters::FileFormat;
 use vehicle::plan::{MissionItem, Plan, PlanKind, command};
@@ -55,13 +54,7 @@ fn speeds_of_a_flight_are_not_kept() {
     let mut flight = Flight::new(&items);
     flight.fly_until("on the way", 60.0, |flight| flight.bench.position()[0] > 5.0);
     assert_eq!(flown(&flight).speed_horizontal_m_s, 3.0);
-    flight.bench.send(MavMessage::PARAM_SET(PARAM_SET_DATA {
-        param_value: 3.5,
-        target_system: 1,
-        target_component: 1,
-        param_id: "LIM_SPEED_UP".into(),
-        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-    }));
+    flight.bench.send(set_parameter("LIM_SPEED_UP", 3.5));
     let text = kept(&mut flight).expect("one has changed");
     assert!(text.contains("LIM_SPEED_HORIZ 8\n") && text.contains("LIM_SPEED_UP 3.5\n"), "{text}");
     assert_eq!(flown(&flight).speed_horizontal_m_s, 3.0);

@@ -3,6 +3,7 @@
 use crate::common;
 use crate::common::Bench;
 use crate::common::failsafe_bench::set;
+use crate::common::requests::local_target;
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::Mode;
@@ -38,14 +39,7 @@ fn push_forward(bench: &mut Bench) {
 }
 
 fn velocity_north(bench: &mut Bench, speed: f32) {
-    bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-        target_system: 1,
-        target_component: 1,
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        type_mask: PositionTargetTypemask::from_bits_truncate(0x0DC7),
-        vx: speed,
-        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-    }));
+    bench.send(local_target(0x0DC7, [0.0; 3], [speed, 0.0, 0.0]));
 }
 
 /// OBSTACLE_DISTANCE of a companion computer: something in the middle sector of the nose.

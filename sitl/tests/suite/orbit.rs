@@ -2,7 +2,8 @@
 
 use core::f64::consts::PI;
 
-use crate::common::{Bench, set_parameter, settings};
+use crate::common::requests::set_parameter;
+use crate::common::{Bench, settings};
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::{COMMAND_INT_DATA, MANUAL_CONTROL_DATA, MavCmd, MavFrame, MavMessage};
 use nalgebra::Vector3;

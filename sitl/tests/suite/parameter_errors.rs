@@ -1,7 +1,8 @@
 //! What is answered to a parameter that is not there, cannot be changed or cannot have a value: PARAM_ERROR.
 
 use crate::common;
-use crate::common::{Bench, set_parameter};
+use crate::common::Bench;
+use crate::common::requests::set_parameter;
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;

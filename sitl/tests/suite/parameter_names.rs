@@ -2,6 +2,7 @@
 
 use crate::common;
 use crate::common::Bench;
+use crate::common::requests::set_parameter_as;
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;
@@ -15,13 +16,7 @@ fn set(identity: Identity, name: &str, value: Value) -> MavMessage {
         }
         other => (other.number() as f32, MavParamType::MAV_PARAM_TYPE_REAL32),
     };
-    MavMessage::PARAM_SET(PARAM_SET_DATA {
-        param_value,
-        target_system: 1,
-        target_component: 1,
-        param_id: name.into(),
-        param_type,
-    })
+    set_parameter_as(name, param_value, param_type)
 }
 
 /// Other values that the description offers, the farthest first.

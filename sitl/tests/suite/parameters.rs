@@ -3,7 +3,8 @@
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
-use crate::common::{Bench, set_parameter};
+use crate::common::Bench;
+use crate::common::requests::set_parameter;
 use autopilot::Autopilot;
 use autopilot::codec::Message;
 use clap::Parser;

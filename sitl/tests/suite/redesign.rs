@@ -1,8 +1,9 @@
 //! Parameters that change in flight: all of them, what is left out, and what a record makes of it.
 
 use crate::common::recording::Recording;
+use crate::common::requests::set_parameter_as;
 use crate::common::{Bench, command_long, settings};
-use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage, MavParamType, PARAM_SET_DATA};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage, MavParamType};
 use quadrotor::{Mutability, PARAMETERS};
 use vehicle::identity::Identity;
 use vehicle::parameters::{Description, Value};
@@ -14,13 +15,7 @@ fn set(id: &str, value: Value) -> MavMessage {
             (f32::from_le_bytes(value.to_le_bytes()), MavParamType::MAV_PARAM_TYPE_INT32)
         }
     };
-    MavMessage::PARAM_SET(PARAM_SET_DATA {
-        param_value,
-        target_system: 1,
-        target_component: 1,
-        param_id: id.into(),
-        param_type,
-    })
+    set_parameter_as(id, param_value, param_type)
 }
 
 /// Other values than the present one, the likelier ones first.

@@ -2,11 +2,11 @@
 
 use crate::common;
 use crate::common::recording::Recording;
+use crate::common::requests::local_target;
 use crate::common::{Bench, settings};
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::{
-    EstimatorStatusFlags, GpsFixType, MavCmd, MavFrame, MavMessage, MavSysStatusSensor,
-    PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
+    EstimatorStatusFlags, GpsFixType, MavCmd, MavMessage, MavSysStatusSensor,
 };
 use nalgebra::Vector3;
 use vehicle::estimation::{SensorModel, SensorSettings};
@@ -201,16 +201,7 @@ fn a_hover_stays_within_its_bars() {
 #[test]
 fn it_flies_the_paper_s_goal_and_lands() {
     let mut bench = ready(4);
-    let goal = MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-        target_system: 1,
-        target_component: 1,
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        type_mask: PositionTargetTypemask::from_bits_retain(0b1001_1111_1000),
-        x: 5.0,
-        y: 5.0,
-        z: -10.0,
-        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-    });
+    let goal = local_target(0b1001_1111_1000, [5.0, 5.0, -10.0], [0.0; 3]);
     bench.send(goal.clone());
     assert_eq!(bench.set_mode(Mode::Offboard), 0);
     bench.arm();

@@ -2,11 +2,11 @@
 
 #![allow(deprecated)] // Clients use what the dialect calls deprecated.
 
+use crate::common::requests::set_parameter;
 use crate::common::{Bench, settings};
 use mavlink::dialects::ardupilotmega::{
-    AttitudeTargetTypemask, MavFrame, MavMessage, MavParamType, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
-    PositionTargetTypemask, SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_GLOBAL_INT_DATA,
-    SET_POSITION_TARGET_LOCAL_NED_DATA,
+    AttitudeTargetTypemask, MavFrame, MavMessage, PARAM_REQUEST_READ_DATA, PositionTargetTypemask,
+    SET_ATTITUDE_TARGET_DATA, SET_POSITION_TARGET_GLOBAL_INT_DATA, SET_POSITION_TARGET_LOCAL_NED_DATA,
 };
 use vehicle::Mode;
 use vehicle::identity::Identity;
@@ -399,13 +399,7 @@ fn the_thrust_that_hovers_is_told() {
         });
         // ArduPilot takes it for a climb rate otherwise.
         if identity.is_ardupilot() {
-            bench.send(MavMessage::PARAM_SET(PARAM_SET_DATA {
-                param_value: 8.0,
-                target_system: 1,
-                target_component: 1,
-                param_id: "GUID_OPTIONS".into(),
-                param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-            }));
+            bench.send(set_parameter("GUID_OPTIONS", 8.0));
         }
         bench.send(target.clone());
         assert_eq!(bench.set_mode(Mode::Offboard), 0);

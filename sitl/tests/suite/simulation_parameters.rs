@@ -2,6 +2,7 @@
 
 use crate::common;
 use crate::common::Bench;
+use crate::common::requests::set_parameter;
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::estimation::{SensorModel, SensorSettings};
@@ -11,13 +12,7 @@ use vehicle::{Mode, VehicleSettings};
 
 fn set(bench: &mut Bench, name: &str, value: f32) {
     bench.heard.clear();
-    bench.send(MavMessage::PARAM_SET(PARAM_SET_DATA {
-        param_value: value,
-        target_system: 1,
-        target_component: 1,
-        param_id: name.into(),
-        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-    }));
+    bench.send(set_parameter(name, value));
     let refused =
         bench.heard.iter().any(|message| matches!(message, Message::Typed(MavMessage::PARAM_ERROR(_))));
     assert!(!refused, "{name} = {value}: {:?}", bench.texts());
@@ -265,13 +260,7 @@ fn instruments_are_as_noisy_as_is_set() {
 #[test]
 fn errors_need_realistic_sensors() {
     let mut bench = Bench::new(Identity::ArduPilot);
-    bench.send(MavMessage::PARAM_SET(PARAM_SET_DATA {
-        param_value: 1.0,
-        target_system: 1,
-        target_component: 1,
-        param_id: "SIM_ACC1_BIAS_X".into(),
-        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-    }));
+    bench.send(set_parameter("SIM_ACC1_BIAS_X", 1.0));
     let texts = bench.texts();
     let told = "SIM_ACC1_BIAS_X: ideal sensors have no errors; start with --sensors realistic";
     assert!(texts.iter().any(|text| text == told), "{texts:?}");

@@ -1,24 +1,13 @@
 //! The ways home: back along the trail, and as the parameters of both autopilots say.
 
+use crate::common::requests::local_target;
 use crate::common::{Bench, settings};
-use mavlink::dialects::ardupilotmega::{
-    MavFrame, MavMessage, PositionTargetTypemask, SET_POSITION_TARGET_LOCAL_NED_DATA,
-};
 use nalgebra::Vector3;
 use vehicle::identity::Identity;
 use vehicle::{HeadingPolicy, LandedState, Mode, TrailSettings, VehicleSettings, wrapped};
 
 fn go_to(bench: &mut Bench, [x, y, z]: [f64; 3]) {
-    bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-        x: x as f32,
-        y: y as f32,
-        z: z as f32,
-        target_system: 1,
-        target_component: 1,
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        type_mask: PositionTargetTypemask::from_bits_retain(0xdf8),
-        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-    }));
+    bench.send(local_target(0xdf8, [x as f32, y as f32, z as f32], [0.0; 3]));
     bench.fly_until("the place", 60.0, |bench| bench.is_near([x, y, z]));
 }
 

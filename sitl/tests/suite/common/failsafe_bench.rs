@@ -1,5 +1,6 @@
 //! Making things go wrong, and what the vehicle tells then.
 
+use super::requests::{local_target, set_parameter_as};
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;
@@ -14,8 +15,6 @@ use super::{Bench, settings};
 pub const TEMPORARILY_REJECTED: u8 = 1;
 
 pub fn set(bench: &mut Bench, id: &str, value: f64) {
-    let mut param_id = [0; 16];
-    param_id[..id.len()].copy_from_slice(id.as_bytes());
     let integer = known_parameters().any(|known| known.id == id && known.integer);
     let ardupilot = bench.autopilot.identity().is_ardupilot();
     // PX4's integers travel bytewise.
@@ -24,15 +23,8 @@ pub fn set(bench: &mut Bench, id: &str, value: f64) {
     } else {
         (value as f32, MavParamType::MAV_PARAM_TYPE_REAL32)
     };
-    let (target_system, target_component) = (1, 1);
     bench.heard.clear();
-    bench.send(MavMessage::PARAM_SET(PARAM_SET_DATA {
-        param_value,
-        target_system,
-        target_component,
-        param_id: param_id.into(),
-        param_type,
-    }));
+    bench.send(set_parameter_as(id, param_value, param_type));
     let now = bench.parameters().pop().expect("an answer").param_value;
     assert_eq!(now.to_bits(), param_value.to_bits(), "{id}: {:?}", bench.texts());
 }
@@ -83,14 +75,7 @@ pub fn hovering_as(identity: Identity, cause: Cause) -> Bench {
 }
 
 pub fn stand_still() -> MavMessage {
-    MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-        target_system: 1,
-        target_component: 1,
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        type_mask: PositionTargetTypemask::from_bits_truncate(0b1101_1111_1000),
-        z: -10.0,
-        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-    })
+    local_target(0b1101_1111_1000, [0.0, 0.0, -10.0], [0.0; 3])
 }
 
 /// Drains the battery down to a share by making it smaller.

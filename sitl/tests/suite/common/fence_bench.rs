@@ -1,5 +1,6 @@
 //! Vehicles within a fence.
 
+use super::requests::{reposition, set_parameter_as};
 use mavlink::dialects::ardupilotmega::*;
 use nalgebra::Vector3;
 use vehicle::plan::{MissionItem, Plan, PlanKind, command, frame};
@@ -56,18 +57,7 @@ pub fn hovering(start: &VehicleSettings, fence: Vec<MissionItem>, rally: Vec<Mis
 
 pub fn go_to(bench: &mut Bench, north: f64, east: f64) -> u8 {
     let place = bench.autopilot.vehicle().frame().to_geodetic(&Vector3::new(north, east, 0.0));
-    let message = MavMessage::COMMAND_INT(COMMAND_INT_DATA {
-        command: MavCmd::MAV_CMD_DO_REPOSITION,
-        target_system: 1,
-        target_component: 1,
-        frame: MavFrame::MAV_FRAME_GLOBAL,
-        param1: -1.0,
-        param4: f32::NAN,
-        x: (place.latitude_deg * 1e7).round() as i32,
-        y: (place.longitude_deg * 1e7).round() as i32,
-        z: f32::NAN,
-        ..COMMAND_INT_DATA::default()
-    });
+    let message = reposition(&place, MavFrame::MAV_FRAME_GLOBAL, f32::NAN);
     bench.heard.clear();
     bench.send(message);
     bench.acks().last().expect("an answer").result
@@ -91,12 +81,6 @@ pub fn forward(bench: &mut Bench) {
 /// Sets a parameter as ArduPilot's clients do: a whole number as a float. Its value then, if there is one.
 pub fn set_cast(bench: &mut Bench, id: &str, value: f32) -> Option<f32> {
     bench.heard.clear();
-    bench.send(MavMessage::PARAM_SET(PARAM_SET_DATA {
-        param_value: value,
-        target_system: 1,
-        target_component: 1,
-        param_id: id.into(),
-        param_type: MavParamType::MAV_PARAM_TYPE_INT32,
-    }));
+    bench.send(set_parameter_as(id, value, MavParamType::MAV_PARAM_TYPE_INT32));
     bench.parameters().pop().map(|now| now.param_value)
 }

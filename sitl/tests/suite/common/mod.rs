@@ -7,14 +7,13 @@ pub mod ftp_client;
 pub mod mission_flight;
 pub mod plan_client;
 pub mod recording;
+pub mod requests;
 pub mod seal;
 
 use autopilot::Autopilot;
 use autopilot::codec::{CommandAck, Frame, Message, Version};
 use autopilot::envelope::{LinkProfile, Origin, PeerId};
-use mavlink::dialects::ardupilotmega::{
-    COMMAND_LONG_DATA, MavCmd, MavMessage, MavParamType, PARAM_SET_DATA, PARAM_VALUE_DATA,
-};
+use mavlink::dialects::ardupilotmega::{COMMAND_LONG_DATA, MavCmd, MavMessage, PARAM_VALUE_DATA};
 use vehicle::identity::Identity;
 use vehicle::parameters::Speed;
 use vehicle::{Mode, VehicleSettings};
@@ -204,16 +203,6 @@ impl Bench {
         let outputs = self.autopilot.vehicle().outputs();
         (outputs.position_m - nalgebra::Vector3::from(goal)).norm() < 0.1 && outputs.velocity_m_s.norm() < 0.1
     }
-}
-
-pub fn set_parameter(name: &str, value: f32) -> MavMessage {
-    MavMessage::PARAM_SET(PARAM_SET_DATA {
-        param_value: value,
-        target_system: 1,
-        target_component: 1,
-        param_id: name.into(),
-        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-    })
 }
 
 pub fn command_long(command: MavCmd, parameters: [f32; 7], confirmation: u8) -> MavMessage {

@@ -3,6 +3,7 @@
 #![allow(deprecated)] // Clients still use what the dialect calls deprecated.
 
 use super::flier::*;
+use crate::common::requests::local_target;
 use mavlink::dialects::ardupilotmega::*;
 
 /// Only the place counts.
@@ -11,19 +12,7 @@ const PLACE: u16 = 0b1101_1111_1000;
 const VELOCITY: u16 = 0b1101_1100_0111;
 
 fn ask(flier: &mut Flier, mask: u16, place: [f32; 3], velocity: [f32; 3]) {
-    flier.bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-        target_system: 1,
-        target_component: 1,
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        type_mask: PositionTargetTypemask::from_bits_retain(mask),
-        x: place[0],
-        y: place[1],
-        z: place[2],
-        vx: velocity[0],
-        vy: velocity[1],
-        vz: velocity[2],
-        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-    }));
+    flier.bench.send(local_target(mask, place, velocity));
 }
 
 fn look(flier: &mut Flier, [north_m, east_m]: [f64; 2]) {

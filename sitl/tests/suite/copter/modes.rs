@@ -1,6 +1,7 @@
 //! Modes: what they refuse, and what they tell.
 
 use super::flier::*;
+use crate::common::requests::local_target;
 use crate::common::settings;
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;
@@ -86,27 +87,12 @@ fn guided_tells_what_it_is_asked_for_and_loiter_nothing() {
     flier.take_off(10.0, GUIDED);
     flier.wait("10 m", 30.0, |flier| flier.height_m() > 9.8);
     flier.fly(2.0);
-    let ask = |type_mask: u16, place: [f32; 3], velocity: [f32; 3]| {
-        MavMessage::SET_POSITION_TARGET_LOCAL_NED(SET_POSITION_TARGET_LOCAL_NED_DATA {
-            target_system: 1,
-            target_component: 1,
-            coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-            type_mask: PositionTargetTypemask::from_bits_retain(type_mask),
-            x: place[0],
-            y: place[1],
-            z: place[2],
-            vx: velocity[0],
-            vy: velocity[1],
-            vz: velocity[2],
-            ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-        })
-    };
     // Places alone; velocities and accelerations without places. LAST_BYTE is set, as the suite does.
     for (asked, told, place, velocity) in [
         (0xf000 | 3576, 3576, [5.0, 5.0, -10.0], [0.0; 3]),
         (0xf000 | 3079, 3079, [0.0; 3], [2.0, 2.0, -1.0]),
     ] {
-        let message = ask(asked, place, velocity);
+        let message = local_target(asked, place, velocity);
         flier.bench.send(message);
         flier.bench.heard.clear();
         flier.fly(1.0);
