@@ -38,7 +38,8 @@ pub fn target_of(frame: &Frame) -> Target {
     let payload = frame.payload();
     let at = |system: usize| Target { system: payload.u8(system), component: payload.u8(system + 1) };
     match frame.message_id() {
-        id::PARAM_REQUEST_LIST => at(0),
+        id::PARAM_REQUEST_LIST | id::PARAM_EXT_REQUEST_LIST | id::PARAM_EXT_SET => at(0),
+        id::PARAM_EXT_REQUEST_READ => at(2),
         id::MISSION_REQUEST_LIST | id::MISSION_CLEAR_ALL | id::MISSION_ACK => at(0),
         id::MISSION_COUNT | id::MISSION_REQUEST | id::MISSION_REQUEST_INT | id::MISSION_SET_CURRENT => at(2),
         id::MISSION_REQUEST_PARTIAL_LIST | id::MISSION_WRITE_PARTIAL_LIST => at(4),

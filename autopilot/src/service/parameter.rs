@@ -167,7 +167,7 @@ fn request_read(context: &mut Context, origin: &Origin, frame: &Frame) {
 }
 
 /// PARAM_ERROR: why a request could not be met, to who made it.
-fn refuse(context: &mut Context, origin: &Origin, param_index: i16, name: &str, error: MavParamError) {
+pub fn refuse(context: &mut Context, origin: &Origin, param_index: i16, name: &str, error: MavParamError) {
     let message = PARAM_ERROR_DATA {
         param_index,
         target_system: origin.system,

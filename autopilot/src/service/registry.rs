@@ -34,6 +34,7 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::equipment::EquipmentHeartbeats::default()),
         Box::new(super::equipment::Outputs),
         Box::new(super::equipment::CameraProtocol::default()),
+        Box::new(super::equipment::CameraParameters),
         Box::new(super::equipment::GimbalManager::default()),
         Box::new(super::equipment::TrackedSystem::default()),
         Box::new(super::mission_jump::MissionJumps),

@@ -154,7 +154,7 @@ fn format(context: &mut Context, command: &Command) -> Result<(), Refusal> {
 }
 
 /// Tells everyone what the camera is set to, and what it does.
-fn tell_status(context: &mut Context) {
+pub fn tell_status(context: &mut Context) {
     for message in [messages::settings(&context.vehicle), messages::capture_status(&context.vehicle)] {
         context.outbox.send_as(Speaker::Camera, Destination::Everyone, message);
     }

@@ -8,7 +8,7 @@ use mavlink::dialects::ardupilotmega::{
 };
 use nalgebra::{UnitQuaternion, Vector3};
 use vehicle::Vehicle;
-use vehicle::equipment::{CameraMode, FOCAL_LENGTH_MM, Image, SENSOR_MM, STORAGE_MIB};
+use vehicle::equipment::{Camera, CameraMode, FOCAL_LENGTH_MM, Image, SENSOR_MM, STORAGE_MIB};
 use vehicle::world::{Geodetic, heading_deg};
 
 use super::gimbal_messages::device_id;
@@ -57,16 +57,21 @@ pub fn information(component: &Component<'_>) -> MavMessage {
     })
 }
 
+/// CAMERA_MODE.
+pub fn mode_id(camera: &Camera) -> MavCameraMode {
+    match camera.mode() {
+        CameraMode::Image => MavCameraMode::CAMERA_MODE_IMAGE,
+        CameraMode::Video => MavCameraMode::CAMERA_MODE_VIDEO,
+        CameraMode::Survey => MavCameraMode::CAMERA_MODE_IMAGE_SURVEY,
+    }
+}
+
 /// CAMERA_SETTINGS.
 pub fn settings(vehicle: &Vehicle) -> MavMessage {
     let camera = vehicle.equipment().camera();
     MavMessage::CAMERA_SETTINGS(CAMERA_SETTINGS_DATA {
         time_boot_ms: boot_ms(vehicle.time_us()),
-        mode_id: match camera.mode() {
-            CameraMode::Image => MavCameraMode::CAMERA_MODE_IMAGE,
-            CameraMode::Video => MavCameraMode::CAMERA_MODE_VIDEO,
-            CameraMode::Survey => MavCameraMode::CAMERA_MODE_IMAGE_SURVEY,
-        },
+        mode_id: mode_id(camera),
         zoomLevel: camera.zoom_percent() as f32,
         focusLevel: camera.focus_percent() as f32,
         ..CAMERA_SETTINGS_DATA::default()
