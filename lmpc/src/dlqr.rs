@@ -2,9 +2,9 @@
 
 use nalgebra::DMatrix;
 
-use crate::riccati::gain;
+use crate::DesignError;
+use crate::riccati;
 use crate::weighting::check_alpha;
-use crate::{DesignError, solve_riccati};
 
 /// Discrete linear quadratic regulator Δu = −K x with a prescribed degree of stability.
 ///
@@ -21,7 +21,7 @@ impl Dlqr {
     /// For x(k+1) = A x + B Δu, weights Q ≥ 0 and R > 0, degree of stability 0 < λ ≤ 1.
     ///
     /// # Errors
-    /// [`DesignError::Lambda`], and those of [`solve_riccati`].
+    /// [`DesignError::Lambda`], and those of [`solve_riccati`](crate::solve_riccati).
     pub fn new(
         a: &DMatrix<f64>,
         b: &DMatrix<f64>,
@@ -48,7 +48,7 @@ impl Dlqr {
     /// Only modes on or outside the circle of radius α must be controllable and observable through Q.
     ///
     /// # Errors
-    /// [`DesignError::Alpha`], and those of [`solve_riccati`].
+    /// [`DesignError::Alpha`], and those of [`solve_riccati`](crate::solve_riccati).
     pub fn exponentially_weighted(
         a: &DMatrix<f64>,
         b: &DMatrix<f64>,
@@ -70,11 +70,9 @@ impl Dlqr {
     ) -> Result<Self, DesignError> {
         // P solves the Riccati equation of (A/ρ, B/ρ, Q, R)
         let (a_scaled, b_scaled) = (a / radius, b / radius);
-        let cost = solve_riccati(&a_scaled, &b_scaled, q, r)?;
+        let solution = riccati::solve(&a_scaled, &b_scaled, q, r)?;
         // K = (R + ρ⁻² BᵀPB)⁻¹ ρ⁻² BᵀPA: (54)
-        let gain = gain(&a_scaled, &b_scaled, r, &cost)
-            .ok_or(DesignError::NotPositiveDefinite { name: "R + BᵀPB" })?;
-        Ok(Self { gain, cost, radius })
+        Ok(Self { gain: solution.gain, cost: solution.p, radius })
     }
 
     /// K, p×n: Δu = −K x.

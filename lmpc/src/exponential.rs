@@ -2,6 +2,8 @@
 
 use nalgebra::DMatrix;
 
+use crate::product::product;
+
 /// exp(M) for a finite square M, by scaling, Taylor's series and squaring (Moler and Van Loan 2003,
 /// method 3). Exact but for rounding when M is nilpotent, as integrator chains are.
 pub(crate) fn exponential(matrix: &DMatrix<f64>) -> DMatrix<f64> {
@@ -19,11 +21,11 @@ pub(crate) fn exponential(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let mut term = identity.clone();
     let mut sum = identity;
     for k in 1..=TERMS {
-        term = &term * &scaled / f64::from(k);
+        term = product(&term, &scaled) / f64::from(k);
         sum += &term;
     }
     for _ in 0..squarings {
-        sum = &sum * &sum;
+        sum = product(&sum, &sum);
     }
     sum
 }

@@ -87,6 +87,7 @@ mod optimal_gain;
 mod posed_program;
 mod precision;
 mod prediction;
+mod product;
 mod quadratic_program;
 mod reachability;
 mod relaxable;

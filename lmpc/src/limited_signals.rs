@@ -6,6 +6,7 @@ use core::ops::Range;
 use nalgebra::{DMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
+use crate::product::product;
 use crate::sparse_columns::SparseColumns;
 use crate::{DesignError, Precision, Sample, SignalLimit, StabilizedDesign, validate};
 
@@ -193,10 +194,10 @@ impl Motion {
         let mut motion = DMatrix::zeros(states, size);
         let mut sums = Self { moves: Vec::with_capacity(end), states: Vec::with_capacity(end) };
         for _ in 0..end {
-            moves += &plan.move_of * &power;
+            moves += product(&plan.move_of, &power);
             sums.moves.push(moves.clone());
             sums.states.push(motion.clone());
-            power = &plan.transition * power;
+            power = product(&plan.transition, &power);
             motion += power.rows(0, states);
         }
         sums
@@ -270,7 +271,7 @@ impl LimitedSignals<f64> {
         samples.sort_unstable();
         samples.dedup();
         for m in samples {
-            let signal = &limit.state * &motion.states[m] + &limit.input * &motion.moves[m];
+            let signal = product(&limit.state, &motion.states[m]) + product(&limit.input, &motion.moves[m]);
             let of_eta = signal.columns(N + Q, terms);
             let of_plan = of_eta * &coordinates.by_z;
             if of_plan.amax() > 0.0 {

@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use nalgebra::{Complex, DMatrix};
 
+use crate::product::product;
 use crate::unit_scaling::UnitScaling;
 use crate::{DesignError, eigenvalues, validate};
 
@@ -52,7 +53,7 @@ fn staircase(a: DMatrix<f64>, b: DMatrix<f64>) -> Result<Vec<Complex<f64>>, Desi
             return eigenvalues("A restricted to what B cannot reach", &a_k);
         }
         // Qᵀ A Q = [A11 A12; A21 A22]: the next pair is (A22, A21).
-        let rotated = q.transpose() * &a_k * &q;
+        let rotated = product(&product(&q.transpose(), &a_k), &q);
         let rest = size - rank;
         b_k = rotated.view((rank, 0), (rest, rank)).into_owned();
         a_k = rotated.view((rank, rank), (rest, rest)).into_owned();

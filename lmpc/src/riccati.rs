@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 
 use crate::eigenvalues::magnitude;
+use crate::product::product;
 use crate::stein::solve_stein;
 use crate::validate::{self, symmetrized};
 use crate::{DesignError, uncontrollable_eigenvalues, unobservable_eigenvalues};
@@ -31,40 +32,67 @@ pub fn solve_riccati(
     q: &DMatrix<f64>,
     r: &DMatrix<f64>,
 ) -> Result<DMatrix<f64>, DesignError> {
+    Ok(solve(a, b, q, r)?.p)
+}
+
+/// A solution of the Riccati equation, or what is to become one.
+pub(crate) struct Solution {
+    pub(crate) p: DMatrix<f64>,
+    /// K = (R + BᵀPB)⁻¹ BᵀPA.
+    pub(crate) gain: DMatrix<f64>,
+    /// As [`riccati_residual`] has it.
+    residual: f64,
+}
+
+/// As [`solve_riccati`], with the gain that belongs to P.
+pub(crate) fn solve(
+    a: &DMatrix<f64>,
+    b: &DMatrix<f64>,
+    q: &DMatrix<f64>,
+    r: &DMatrix<f64>,
+) -> Result<Solution, DesignError> {
     check_preconditions(a, b, q, r)?;
+    let (p, iterations) = doubled(a, b, q, r)?;
+    let failed = |residual| DesignError::Riccati { residual, iterations };
+    let solution = Solution::of(a, b, q, r, p).ok_or(failed(f64::INFINITY))?.refined(a, b, q, r);
+    if solution.residual <= RESIDUAL_TOLERANCE { Ok(solution) } else { Err(failed(solution.residual)) }
+}
+
+/// P by doubling, and how many doublings it took.
+fn doubled(
+    a: &DMatrix<f64>,
+    b: &DMatrix<f64>,
+    q: &DMatrix<f64>,
+    r: &DMatrix<f64>,
+) -> Result<(DMatrix<f64>, usize), DesignError> {
     let r_inverse_b_t = match r.clone().cholesky() {
         Some(factor) => factor.solve(&b.transpose()),
         None => return Err(DesignError::NotPositiveDefinite { name: "R" }),
     };
-
     let identity = DMatrix::identity(a.nrows(), a.nrows());
     let mut a_k = a.clone();
-    let mut g_k = b * r_inverse_b_t;
+    let mut g_k = product(b, &r_inverse_b_t);
     let mut h_k = q.clone();
-    let mut iterations = 0;
-    for doubling in 1..=MAXIMUM_DOUBLINGS {
-        iterations = doubling;
+    for iterations in 1..=MAXIMUM_DOUBLINGS {
         // W = I + G H
-        let w = (&identity + &g_k * &h_k).lu();
+        let w = (&identity + product(&g_k, &h_k)).lu();
         let (Some(w_inverse_a), Some(w_inverse_g)) = (w.solve(&a_k), w.solve(&g_k)) else {
             return Err(DesignError::Riccati { residual: f64::INFINITY, iterations });
         };
         // H ← H + Aᵀ H W⁻¹ A,  G ← G + A W⁻¹ G Aᵀ,  A ← A W⁻¹ A
-        let increment = a_k.transpose() * &h_k * &w_inverse_a;
-        h_k = symmetrized(&(&h_k + &increment));
-        g_k = symmetrized(&(&g_k + &a_k * w_inverse_g * a_k.transpose()));
-        a_k = &a_k * w_inverse_a;
+        let a_k_t = a_k.transpose();
+        let increment = product(&product(&a_k_t, &h_k), &w_inverse_a);
+        h_k = symmetrized(&(h_k + &increment));
         if !h_k.iter().all(|value| value.is_finite()) {
             return Err(DesignError::Riccati { residual: f64::INFINITY, iterations });
         }
         if increment.amax() <= f64::EPSILON * h_k.amax() {
-            break;
+            return Ok((h_k, iterations));
         }
+        g_k = symmetrized(&(g_k + product(&product(&a_k, &w_inverse_g), &a_k_t)));
+        a_k = product(&a_k, &w_inverse_a);
     }
-
-    let p = refined(a, b, q, r, h_k);
-    let residual = riccati_residual(a, b, q, r, &p);
-    if residual <= RESIDUAL_TOLERANCE { Ok(p) } else { Err(DesignError::Riccati { residual, iterations }) }
+    Ok((h_k, MAXIMUM_DOUBLINGS))
 }
 
 /// ‖AᵀPA − AᵀPB (R + BᵀPB)⁻¹ BᵀPA + Q − P‖ / max(‖P‖, ‖Q‖) in the Frobenius norm; infinite when
@@ -76,41 +104,37 @@ pub fn riccati_residual(
     r: &DMatrix<f64>,
     p: &DMatrix<f64>,
 ) -> f64 {
-    let Some(gain) = gain(a, b, r, p) else { return f64::INFINITY };
-    let difference = a.transpose() * p * (a - b * gain) + q - p;
-    let scale = p.norm().max(q.norm());
-    if scale > 0.0 { difference.norm() / scale } else { difference.norm() }
+    Solution::of(a, b, q, r, p.clone()).map_or(f64::INFINITY, |solution| solution.residual)
 }
 
-/// K = (R + BᵀPB)⁻¹ BᵀPA.
-pub(crate) fn gain(
-    a: &DMatrix<f64>,
-    b: &DMatrix<f64>,
-    r: &DMatrix<f64>,
-    p: &DMatrix<f64>,
-) -> Option<DMatrix<f64>> {
-    let b_t_p = b.transpose() * p;
-    Some(symmetrized(&(r + &b_t_p * b)).cholesky()?.solve(&(b_t_p * a)))
-}
+impl Solution {
+    /// That of P, unless R + BᵀPB cannot be inverted.
+    fn of(
+        a: &DMatrix<f64>,
+        b: &DMatrix<f64>,
+        q: &DMatrix<f64>,
+        r: &DMatrix<f64>,
+        p: DMatrix<f64>,
+    ) -> Option<Self> {
+        let b_t_p = product(&b.transpose(), &p);
+        let gain = symmetrized(&(r + product(&b_t_p, b))).cholesky()?.solve(&product(&b_t_p, a));
+        let closed_loop = a - product(b, &gain);
+        let difference = product(&product(&a.transpose(), &p), &closed_loop) + q - &p;
+        let scale = p.norm().max(q.norm());
+        let residual = if scale > 0.0 { difference.norm() / scale } else { difference.norm() };
+        Some(Self { p, gain, residual })
+    }
 
-/// One Newton step: P of the closed loop under the gain of `p`; `p` itself if that loop is not stable.
-fn refined(
-    a: &DMatrix<f64>,
-    b: &DMatrix<f64>,
-    q: &DMatrix<f64>,
-    r: &DMatrix<f64>,
-    p: DMatrix<f64>,
-) -> DMatrix<f64> {
-    let Some(gain) = gain(a, b, r, &p) else { return p };
-    let closed_loop_t = (a - b * &gain).transpose();
-    let stage_cost = q + gain.transpose() * r * &gain;
-    match solve_stein(&closed_loop_t, &closed_loop_t, &stage_cost) {
-        Some(newton) => {
-            let newton = symmetrized(&newton);
-            let better = riccati_residual(a, b, q, r, &newton) < riccati_residual(a, b, q, r, &p);
-            if better { newton } else { p }
+    /// One Newton step: P of the closed loop under its gain; itself if that loop is not stable or P becomes no better.
+    fn refined(self, a: &DMatrix<f64>, b: &DMatrix<f64>, q: &DMatrix<f64>, r: &DMatrix<f64>) -> Self {
+        let closed_loop_t = (a - product(b, &self.gain)).transpose();
+        let stage_cost = q + product(&product(&self.gain.transpose(), r), &self.gain);
+        let newton = solve_stein(&closed_loop_t, &closed_loop_t, &stage_cost)
+            .and_then(|newton| Self::of(a, b, q, r, symmetrized(&newton)));
+        match newton {
+            Some(newton) if newton.residual < self.residual => newton,
+            _ => self,
         }
-        None => p,
     }
 }
 

@@ -2,6 +2,8 @@
 
 use nalgebra::DMatrix;
 
+use crate::product::product;
+
 /// Solves X = A X Bᵀ + C for square, stable A and B, X = Σ Aᵏ C (Bᵀ)ᵏ, by doubling the number of
 /// summed terms in each step (Smith's squared method). With A = B and C = W it is the stationary covariance of
 /// x(k+1) = A x(k) + w(k), the covariance of w being W.
@@ -10,9 +12,10 @@ use nalgebra::DMatrix;
 pub fn solve_stein(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     /// 2^60 terms: more than any stable pair in double precision needs.
     const MAXIMUM_DOUBLINGS: usize = 60;
-    let (mut a_k, mut b_k, mut x) = (a.clone(), b.clone(), c.clone());
+    let is_one = a == b;
+    let (mut a_k, mut b_k_t, mut x) = (a.clone(), b.transpose(), c.clone());
     for _ in 0..MAXIMUM_DOUBLINGS {
-        let increment = &a_k * &x * b_k.transpose();
+        let increment = product(&product(&a_k, &x), &b_k_t);
         x += &increment;
         if !x.iter().all(|value| value.is_finite()) {
             return None;
@@ -20,8 +23,8 @@ pub fn solve_stein(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Opti
         if increment.amax() <= f64::EPSILON * x.amax() {
             return Some(x);
         }
-        a_k = &a_k * &a_k;
-        b_k = &b_k * &b_k;
+        a_k = product(&a_k, &a_k);
+        b_k_t = if is_one { a_k.transpose() } else { product(&b_k_t, &b_k_t) };
     }
     None
 }

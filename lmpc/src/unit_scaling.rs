@@ -109,9 +109,7 @@ fn strongest_cycle(elements: &DMatrix<f64>) -> f64 {
     let mut strongest = f64::NEG_INFINITY;
     for length in 1..=n {
         strongest = strongest.max(power.diagonal().max() / length as f64);
-        power = DMatrix::from_fn(n, n, |i, j| {
-            (0..n).map(|k| elements[(i, k)] + power[(k, j)]).fold(f64::NEG_INFINITY, f64::max)
-        });
+        power = max_plus(elements, &power);
     }
     if strongest.is_finite() { strongest } else { 0.0 }
 }
@@ -122,13 +120,36 @@ fn closure(steps: &DMatrix<f64>) -> DMatrix<f64> {
     let mut ways = steps.clone();
     ways.fill_diagonal(0.0);
     for through in 0..n {
-        for i in 0..n {
-            for j in 0..n {
-                ways[(i, j)] = ways[(i, j)].max(ways[(i, through)] + ways[(through, j)]);
-            }
+        let from_there = ways.column(through).into_owned();
+        for mut to in ways.column_iter_mut() {
+            let there = to[through];
+            raise(to.as_mut_slice(), from_there.as_slice(), there);
         }
     }
     ways
+}
+
+/// The product of two square matrices in the max-plus algebra.
+fn max_plus(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut product = DMatrix::repeat(one.nrows(), other.ncols(), f64::NEG_INFINITY);
+    for (mut sums, factors) in product.column_iter_mut().zip(other.column_iter()) {
+        for (elements, factor) in one.column_iter().zip(&factors) {
+            raise(sums.as_mut_slice(), elements.as_slice(), *factor);
+        }
+    }
+    product
+}
+
+/// Raises numbers to what leads further: the sums of `steps` and `further`. None of them is a NaN.
+fn raise(numbers: &mut [f64], steps: &[f64], further: f64) {
+    if further == f64::NEG_INFINITY {
+        return;
+    }
+    for (number, step) in numbers.iter_mut().zip(steps) {
+        let sum = step + further;
+        // Not `max`, which looks for NaNs.
+        *number = if sum > *number { sum } else { *number };
+    }
 }
 
 /// By how much `reached` must be raised to agree in the mean with `states` where both have a value.

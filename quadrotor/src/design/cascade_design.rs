@@ -150,7 +150,9 @@ impl Redesigned {
         let (before, after) = (&one.controllers, &other.controllers);
         let every = before.kind != after.kind || before.model != after.model;
         Self {
-            altitude: every || before.altitude != after.altitude || one.airframe != other.airframe,
+            altitude: every
+                || before.altitude != after.altitude
+                || one.airframe.rotor_time_constant_s != other.airframe.rotor_time_constant_s,
             position: every || before.position != after.position || !AttitudeDesign::is_same(one, other),
             attitude: !AttitudeDesign::is_same(one, other),
             estimator: before.attitude.sample_time_us != after.attitude.sample_time_us

@@ -22,10 +22,18 @@ impl RotorLossDesign {
         Self { laws: core::array::from_fn(law) }
     }
 
-    /// Whether two configurations have the same laws.
+    /// Whether two configurations have the same laws, which are about thrusts: neither the mass nor what makes the thrusts is in them.
     pub(crate) fn is_same(one: &Configuration, other: &Configuration) -> bool {
-        one.airframe == other.airframe
-            && one.controllers.attitude.sample_time_us == other.controllers.attitude.sample_time_us
+        let depends = |configuration: &Configuration| {
+            let airframe = &configuration.airframe;
+            (
+                (airframe.arm_length_m, airframe.layout),
+                airframe.inertia_kg_m2,
+                airframe.rotor_time_constant_s,
+                configuration.controllers.attitude.sample_time_us,
+            )
+        };
+        depends(one) == depends(other)
     }
 
     /// The law for the loss of a rotor.
@@ -51,6 +59,36 @@ mod tests {
     use super::RotorLossDesign;
     use crate::control::rotor_loss::RotorLossLaw;
     use crate::{Airframe, Configuration, RotorLayout};
+
+    /// What a law needs to know of the airframe: what is taken over after a change is what would be designed.
+    #[test]
+    fn the_laws_depend_on_places_inertia_lag_and_sample_time_alone() {
+        let configuration = Configuration::default();
+        let design = RotorLossDesign::new(&configuration);
+        let others: [fn(&mut Configuration); 6] = [
+            |other| other.airframe.mass_kg *= 2.0,
+            |other| other.airframe.thrust_coefficient_n_s2 *= 2.0,
+            |other| other.airframe.rotor_speed_max_rad_s *= 2.0,
+            |other| other.airframe.drag_n_s_m = [0.1; 3],
+            |other| other.airframe.centre_of_gravity_m = [0.01; 3],
+            |other| other.controllers.attitude.output_weight *= 2.0,
+        ];
+        let those: [fn(&mut Configuration); 5] = [
+            |other| other.airframe.arm_length_m *= 2.0,
+            |other| other.airframe.layout = RotorLayout::h(1.3),
+            |other| other.airframe.inertia_kg_m2[2] *= 1.1,
+            |other| other.airframe.rotor_time_constant_s *= 2.0,
+            |other| other.controllers.attitude.sample_time_us *= 2,
+        ];
+        let changes =
+            others.map(|change| (change, true)).into_iter().chain(those.map(|change| (change, false)));
+        for (index, (change, is_same)) in changes.enumerate() {
+            let mut other = configuration;
+            change(&mut other);
+            assert_eq!(RotorLossDesign::is_same(&configuration, &other), is_same, "change {index}");
+            assert_eq!(RotorLossDesign::new(&other) == design, is_same, "change {index}");
+        }
+    }
 
     /// In an "H" and with moments of inertia that differ, and where all rotors are alike.
     #[test]

@@ -74,8 +74,12 @@ fn another_airframe_has_other_controllers() {
     let all = redesigned(ControllerKind::Lmpc, |changed| {
         changed.airframe.layout = RotorLayout::x();
         changed.airframe.rotor_speed_max_rad_s = 400.0;
+        changed.airframe.rotor_time_constant_s = 0.02;
     });
     assert_eq!(all, Redesigned { estimator: false, altitude: true, position: true, attitude: true });
+    // The altitude controller commands accelerations: the mass is not in its model.
+    let heavier = redesigned(ControllerKind::Lmpc, |changed| changed.airframe.mass_kg = 0.8);
+    assert_eq!(heavier, Redesigned { attitude: true, position: true, ..NONE });
     assert_eq!(redesigned(ControllerKind::Lmpc, |changed| changed.controllers.mass_factor = 1.2), NONE);
 }
 
