@@ -209,7 +209,7 @@ impl LimitedSignals<f64> {
     ///
     /// # Errors
     /// [`DesignError::Dimension`]: see [`StabilizedMpc::new`](crate::StabilizedMpc::new).
-    pub(crate) fn new<const N: usize, const P: usize, const Q: usize>(
+    pub(crate) fn new(
         design: &StabilizedDesign,
         limits: &[SignalLimit],
         coordinates: &PlanCoordinates,
@@ -227,23 +227,25 @@ impl LimitedSignals<f64> {
             scales: Vec::new(),
         };
         let end = limits.iter().flat_map(|limit| &limit.samples).max().map_or(0, |last| last + 1);
-        let motion = Motion::new(design, N, P, end);
+        let plant = design.model().plant();
+        let sizes @ [states, inputs, _] = [plant.states(), plant.inputs(), plant.outputs()];
+        let motion = Motion::new(design, states, inputs, end);
         let mut bounds = 0;
         let mut signals = Vec::new();
         for limit in limits {
             let components = limit.directions.ncols();
-            validate::shape("C of a limit", &limit.state, (components, N))?;
-            validate::shape("D of a limit", &limit.input, (components, P))?;
+            validate::shape("C of a limit", &limit.state, (components, states))?;
+            validate::shape("D of a limit", &limit.input, (components, inputs))?;
             validate::shape(
                 "directions of a limit",
                 &limit.directions,
                 (limit.directions.nrows().min(DIRECTIONS), components.min(COMPONENTS)),
             )?;
-            signals.push(placed.add::<N, P, Q>(limit, &motion, coordinates, slack_unit, bounds));
+            signals.push(placed.add(limit, sizes, &motion, coordinates, slack_unit, bounds));
             bounds += limit.directions.nrows();
         }
         for component in 0..COMPONENTS {
-            placed.add_component::<N, Q>(component, &signals);
+            placed.add_component(component, sizes, &signals);
         }
         if placed.count > SIGNALS {
             return Err(DesignError::Dimension {
@@ -257,9 +259,10 @@ impl LimitedSignals<f64> {
     }
 
     /// Adds a limit on those of its samples on which a decision moves it: its signals there.
-    fn add<const N: usize, const P: usize, const Q: usize>(
+    fn add(
         &mut self,
         limit: &SignalLimit,
+        [states, inputs, outputs]: [usize; 3],
         motion: &Motion,
         coordinates: &PlanCoordinates,
         slack_unit: f64,
@@ -272,18 +275,18 @@ impl LimitedSignals<f64> {
         samples.dedup();
         for m in samples {
             let signal = product(&limit.state, &motion.states[m]) + product(&limit.input, &motion.moves[m]);
-            let of_eta = signal.columns(N + Q, terms);
+            let of_eta = signal.columns(states + outputs, terms);
             let of_plan = of_eta * &coordinates.by_z;
             if of_plan.amax() > 0.0 {
-                let of_state = signal.columns(0, N + Q) + of_eta * &coordinates.unlimited;
+                let of_state = signal.columns(0, states + outputs) + of_eta * &coordinates.unlimited;
                 self.by_sample.push((m, self.limits.len(), signals.len()));
                 signals.push(SignalAt { of_state, of_plan });
             }
         }
         let components = limit.directions.ncols();
         let (mut state, mut input) = (SparseColumns::default(), SparseColumns::default());
-        state.add_block(0, components, N, |row, at| limit.state[(row, at)]);
-        input.add_block(0, components, P, |row, at| limit.input[(row, at)]);
+        state.add_block(0, components, states, |row, at| limit.state[(row, at)]);
+        input.add_block(0, components, inputs, |row, at| limit.input[(row, at)]);
         let first_row = self.scales.len();
         for sample in 0..signals.len() {
             let row = |side| [self.limits.len(), sample, side].map(|index| index as u16);
@@ -317,7 +320,12 @@ impl LimitedSignals<f64> {
     }
 
     /// Places a component of all limits that have it behind those before, `signals` being those of each limit.
-    fn add_component<const N: usize, const Q: usize>(&mut self, component: usize, signals: &[Vec<SignalAt>]) {
+    fn add_component(
+        &mut self,
+        component: usize,
+        [states, _, outputs]: [usize; 3],
+        signals: &[Vec<SignalAt>],
+    ) {
         let before: usize =
             self.limits.iter().map(|limit| limit.samples * limit.components.min(component)).sum();
         let mut rows = Vec::new();
@@ -329,8 +337,9 @@ impl LimitedSignals<f64> {
         }
         let terms = rows.first().map_or(0, |signal| signal.of_plan.ncols());
         let count = rows.len();
-        self.of_increment.add_block(before, count, N, |row, at| rows[row].of_state[(component, at)]);
-        self.of_error.add_block(before, count, Q, |row, at| rows[row].of_state[(component, N + at)]);
+        self.of_increment.add_block(before, count, states, |row, at| rows[row].of_state[(component, at)]);
+        self.of_error
+            .add_block(before, count, outputs, |row, at| rows[row].of_state[(component, states + at)]);
         self.plan_of_component[component] =
             self.of_plan.add_block(before, count, terms, |row, at| rows[row].of_plan[(component, at)]);
     }

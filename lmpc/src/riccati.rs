@@ -109,6 +109,7 @@ pub fn riccati_residual(
 
 impl Solution {
     /// That of P, unless R + BᵀPB cannot be inverted.
+    #[inline(never)]
     fn of(
         a: &DMatrix<f64>,
         b: &DMatrix<f64>,

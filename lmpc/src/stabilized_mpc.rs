@@ -93,7 +93,7 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
             unconstrained: StateFeedback::new(design.gain())?,
             unknowns: terms + 1,
             first_move: SMatrix::from_fn(|i, j| if j < terms { first_move[(i, j)] } else { 0.0 }),
-            signals: LimitedSignals::new::<N, P, Q>(design, limits, &coordinates, slack_unit)?,
+            signals: LimitedSignals::new(design, limits, &coordinates, slack_unit)?,
             slack_unit,
             identity: 0,
         };
