@@ -39,7 +39,8 @@ const OVERSHOOT: &str = "overshoot, %";
 pub const SETTLED: &str = "settled within 2 cm, s";
 /// Name of the figure that the optimum is compared in.
 pub const SQUARED_DISTANCE: &str = "integral of the squared distance, m²·s";
-const EXCESS: &str = "beyond a limit, %";
+/// Name of the figure that says by how much a limit was broken.
+pub const EXCESS: &str = "beyond a limit, %";
 
 /// The part of a cruise that counts: between these distances from the start, m.
 const CRUISE_M: [f64; 2] = [80.0, 230.0];
@@ -146,8 +147,8 @@ fn start(track: &Track) -> &[Moment] {
 fn mass(plan: &Plan, track: &Track) -> Vec<Figure> {
     let last = track.last(15.0);
     let noisy = plan.configuration.sensors.position_noise_m > 0.0;
-    // Noise of 2 cm moves a vehicle whose mass is known by 2.5 cm; wandering is decimetres and more.
-    let most_cm = if noisy { 6.0 } else { 1.0 };
+    // Noise of 2 cm moves a vehicle whose mass is known by 2.5 cm.
+    let most_cm = if noisy { 2.5 } else { 1.0 };
     let bob = |moment: &Moment| moment.error_m().z;
     let sway = |moment: &Moment| moment.error_m().xy().norm();
     vec![

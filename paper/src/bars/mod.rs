@@ -25,7 +25,7 @@ mod table;
 mod taylor;
 mod track;
 
-pub use figure::{SETTLED, SQUARED_DISTANCE};
+pub use figure::{EXCESS, SETTLED, SQUARED_DISTANCE};
 pub use flyer::Flyer;
 pub use optimum::{Optimum, OptimumResult};
 pub use plan::Plan;

@@ -2,11 +2,13 @@
 
 use super::Page;
 use super::bar_figures::{cruise, deviations, goals, paths};
-use crate::bars::{BarResult, Flyer, OptimumResult, SETTLED, SQUARED_DISTANCE};
+use crate::bars::{BarResult, EXCESS, Flyer, OptimumResult, SETTLED, SQUARED_DISTANCE};
 use crate::results::Results;
 
 /// A controller that is better by less than this share is no better.
 const TIE: f64 = 0.1;
+/// A limit that is broken by no more than this is kept, %.
+const MOST_EXCESS: f64 = 1.0;
 
 pub fn section(page: &mut Page, results: &Results) {
     page.heading("Bars: the closed loop against numbers");
@@ -111,21 +113,20 @@ fn table(page: &mut Page, bars: &[BarResult]) {
     }
 }
 
-/// Bars that LMPC misses, and judged figures in which another cascade is clearly better.
+/// Bars that LMPC misses, and judged figures in which another controller is clearly better, whatever limits it breaks.
 fn losses(page: &mut Page, bars: &[BarResult]) {
     let mut rows = Vec::new();
     for figure in figures(bars) {
         let Some(lmpc) = figure.iter().find(|bar| bar.controller == Flyer::LaguerreMpc.name()) else {
             continue;
         };
-        let cascades = figure.iter().filter(|bar| bar.controller != Flyer::Geometric.name());
-        let valued = cascades.filter_map(|bar| Some((bar.value?, &bar.controller)));
-        let Some((least, who)) = valued.min_by(|one, other| one.0.total_cmp(&other.0)) else { continue };
+        let valued = figure.iter().filter_map(|bar| Some((bar.value?, *bar)));
+        let Some((least, best)) = valued.min_by(|one, other| one.0.total_cmp(&other.0)) else { continue };
         let value = lmpc.value.unwrap_or(f64::INFINITY);
         let missed = lmpc.passed == Some(false);
         // A value far below its bar is no loss, whoever has less.
         let bound = lmpc.bound.unwrap_or(f64::INFINITY);
-        let beaten = value > least + TIE * bound && value > (1.0 + TIE) * least && lmpc.passed.is_some();
+        let beaten = value > TIE * bound && value > (1.0 + TIE) * least && lmpc.passed.is_some();
         if missed || beaten {
             rows.push(vec![
                 format!("{}: {}", lmpc.row, lmpc.flight),
@@ -133,20 +134,31 @@ fn losses(page: &mut Page, bars: &[BarResult]) {
                 lmpc.value.map_or("never".to_owned(), number),
                 lmpc.bound.map_or(String::new(), number),
                 if missed { "missed" } else { "kept" }.to_owned(),
-                format!("{who}: {}", number(least)),
+                format!("{}: {}{}", best.controller, number(least), broken(bars, best)),
             ]);
         }
     }
     if rows.is_empty() {
-        page.paragraph(
-            "LMPC keeps every bar, and no other of our controllers is clearly better in any of them.",
-        );
+        page.paragraph("LMPC keeps every bar, and no other controller is clearly better in any of them.");
         return;
     }
     page.paragraph(
-        "Bars that LMPC misses, and judged figures in which another of our controllers is better by more than 10 % of the bar.",
+        "Bars that LMPC misses, and judged figures in which another controller is better by more than 10 %, also where it breaks limits. \
+         Values below a tenth of their bar count as equal.",
     );
-    page.table(&["flight", "figure", "LMPC", "at most", "bar", "best of ours"], &rows);
+    page.table(&["flight", "figure", "LMPC", "at most", "bar", "best"], &rows);
+}
+
+/// By how much the controller of a figure breaks limits in its flight, if it does.
+fn broken(bars: &[BarResult], best: &BarResult) -> String {
+    let is_same = |bar: &&BarResult| {
+        (bar.row, &bar.flight, &bar.controller) == (best.row, &best.flight, &best.controller)
+    };
+    let excess = bars.iter().filter(is_same).find(|bar| bar.figure == EXCESS).and_then(|bar| bar.value);
+    match excess {
+        Some(percent) if percent > MOST_EXCESS => format!(" (limits broken by {} %)", number(percent)),
+        _ => String::new(),
+    }
 }
 
 fn optimum(page: &mut Page, results: &Results) {
