@@ -68,7 +68,7 @@ impl AltitudeController {
             deviation: deviation + Vector3::z() * seen.disturbance_m_s2,
             error,
             // The rotors answer late: z̈ = G − T z⃛.
-            input_reference: reference.thrust + reference.jerk * lag_s,
+            input_reference: reference.thrust + reference.thrust_jerk * lag_s,
             disturbance: Vector1::new(seen.disturbance_m_s2),
             upper: &altitude_bounds(&configuration.limits, range, rate_m_s),
             ..Sample::default()

@@ -17,6 +17,7 @@ use crate::control::required_thrust::RequiredThrust;
 use crate::control::rotor_command::RotorCommand;
 use crate::control::thrust_lag::ThrustLag;
 use crate::control::turned_way::{ForetoldWay, TurnedWay};
+use crate::control::unseen_motion::UnseenMotion;
 use crate::design::controller_limits::{
     COMMANDED_TILT_SHARE, holding_horizontal_m_s2, least_thrust_n, thrust_range_n,
 };
@@ -178,9 +179,10 @@ impl Cascade {
                 position: reference.position_m.xy(),
                 velocity: reference.velocity_m_s.xy(),
                 acceleration: reference.acceleration_m_s2.xy(),
+                jerk: reference.jerk_m_s3.xy(),
                 thrust: required.acceleration_m_s2.xy(),
-                jerk: required.jerk_m_s3.xy(),
-                snap: required.snap_m_s4.xy(),
+                thrust_jerk: required.jerk_m_s3.xy(),
+                thrust_snap: required.snap_m_s4.xy(),
                 interval_s,
             }
         };
@@ -194,10 +196,17 @@ impl Cascade {
         let lightest = vertical.max(braking_m_s2(seen, reference).min(down));
         let holding = holding_horizontal_m_s2(configuration, seen.vertical().disturbance_m_s2);
         let present = most_horizontal(vertical, tilt_rad).min(holding);
+        let mut seen = seen.horizontal(configuration, &self.attitude.feedback_rad_s2());
+        if !now.is_at_rest() {
+            let required = RequiredThrust::of(configuration, reference);
+            let unseen = UnseenMotion::on(&required, &Heading::of(reference), configuration);
+            seen.jerk_m_s3 += unseen.jerk_m_s3;
+            seen.snap_m_s4 += unseen.snap_m_s4;
+        }
         let (applied, activity) = self.position.step(
             configuration,
             design,
-            &seen.horizontal(configuration, &self.attitude.feedback_rad_s2()),
+            &seen,
             (&now, later, asked),
             (present, most_horizontal(lightest, tilt_rad).min(holding)),
         );
@@ -222,9 +231,10 @@ impl Cascade {
             position: axis(&reference.position_m),
             velocity: axis(&reference.velocity_m_s),
             acceleration: axis(&reference.acceleration_m_s2),
+            jerk: axis(&reference.jerk_m_s3),
             thrust: axis(&required.acceleration_m_s2),
-            jerk: axis(&required.jerk_m_s3),
-            snap: axis(&required.snap_m_s4),
+            thrust_jerk: axis(&required.jerk_m_s3),
+            thrust_snap: axis(&required.snap_m_s4),
             interval_s: interval_s(&mut self.sampled.altitude_us, time_us, period_us),
         };
         let range = vertical_range(configuration, upright(&seen.body));
@@ -260,7 +270,8 @@ impl Cascade {
             acceleration_rad_s2: attitude.angular_acceleration_rad_s2,
             jerk_rad_s3: change / lag_s,
         };
-        let thrust_n = thrust(configuration, vertical, upright);
+        let thrust_n =
+            thrust(configuration, vertical, upright, upright_when_answered(configuration, &seen.body));
         // The altitude controller leaves the torques their reserve itself: its thrust is kept.
         let thrust_n = (thrust_n, thrust_n);
         self.command_rotors(configuration, design, seen, &required, thrust_n)
@@ -345,6 +356,15 @@ fn upright(body: &RigidBody) -> f64 {
     (body.rotation() * Vector3::z()).z
 }
 
+/// The same when the rotors will have answered a command, in the middle of the time for which it is held. What answers with a lag T
+/// follows c when c + T ċ is commanded.
+fn upright_when_answered(configuration: &Configuration, body: &RigidBody) -> f64 {
+    let held_s = configuration.controllers.attitude.sample_time_s();
+    let later_s = configuration.airframe.rotor_time_constant_s + held_s / 2.0;
+    let rising_1_s = (body.rotation() * body.body_rate_rad_s.cross(&Vector3::z())).z;
+    (upright(body) + rising_1_s * later_s).clamp(UPRIGHT, 1.0)
+}
+
 /// Acceleration down, m/s², with which a climb will be braked at its goal: v²/2h, as far as it is under way. None of a descent, which is
 /// braked by more thrust.
 fn braking_m_s2(seen: &Observation, reference: &PositionReference) -> f64 {
@@ -368,12 +388,12 @@ pub(crate) fn vertical_range(configuration: &Configuration, upright: f64) -> (f6
     (GRAVITY_M_S2 - most * share, GRAVITY_M_S2 - least * share)
 }
 
-/// F = m (g − G) of (7), divided by cos φ cos θ because a tilted thrust carries less.
-fn thrust(configuration: &Configuration, vertical_m_s2: f64, upright: f64) -> f64 {
+/// F = m (g − G) of (7), divided by cos φ cos θ because a tilted thrust carries less: by that of `then`, when there will be this thrust.
+fn thrust(configuration: &Configuration, vertical_m_s2: f64, upright: f64, then: f64) -> f64 {
     if upright < UPRIGHT {
         return configuration.believed_mass_kg() * GRAVITY_M_S2;
     }
     let level = configuration.believed_mass_kg() * (GRAVITY_M_S2 - vertical_m_s2);
     let (least, most) = thrust_range_n(configuration);
-    (level / upright).clamp(least, most)
+    (level / then).clamp(least, most)
 }

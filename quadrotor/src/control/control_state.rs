@@ -312,7 +312,8 @@ impl ControlState {
         let seen = Observation::new(configuration, &self.estimator, &measurement.motion, time_us);
         match &inputs.target {
             Target::Reference(reference) => {
-                if due.position || due.altitude {
+                // A way that is passed on is followed by each command; a shaped one waits for those that plan.
+                if due.position || due.altitude || !self.guidance.is_shaped() {
                     let limits = (&configuration.flyable_limits(), &configuration.response_times());
                     self.guidance.sample(reference, inputs.plan.as_ref(), limits, time_us);
                 }

@@ -130,8 +130,10 @@ impl Estimator {
             mean(&wrench_of_rotors(airframe, &before), &wrench_of_rotors(airframe, &self.rotor_speed_rad_s));
         let rotation = self.body.rotation();
 
-        // v̇ = g e₃ − R e₃ F/m
-        let thrust = rotation * Vector3::z() * (wrench.thrust_n / (believed * airframe.mass_kg));
+        // v̇ = g e₃ − R e₃ F/m, with R in the middle of the sample: with R at its beginning, a body that turns would seem pushed.
+        let half_s = design.sample_time_s / 2.0;
+        let halfway = rotation * UnitQuaternion::from_scaled_axis(self.body.body_rate_rad_s * half_s);
+        let thrust = halfway * Vector3::z() * (wrench.thrust_n / (believed * airframe.mass_kg));
         let acceleration = Vector3::z() * GRAVITY_M_S2 - thrust;
         let drag = configuration.drag_1_s().component_mul(&self.body.velocity_m_s);
         // ω̇ = J⁻¹ (τ − ω × Jω)

@@ -33,4 +33,5 @@ pub(crate) mod thrown;
 pub(crate) mod thrust_lag;
 pub(crate) mod tracking_law;
 pub(crate) mod turned_way;
+pub(crate) mod unseen_motion;
 pub(crate) mod vehicle_motion;

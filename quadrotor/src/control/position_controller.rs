@@ -215,8 +215,8 @@ fn state_of(reference: &ReferenceMotion<2>) -> SVector<f64, POSITION_STATES> {
         reference.position,
         reference.velocity,
         reference.thrust,
-        reference.jerk,
-        reference.snap,
+        reference.thrust_jerk,
+        reference.thrust_snap,
         Vector2::zeros(),
     ])
 }
@@ -225,8 +225,8 @@ fn state_of(reference: &ReferenceMotion<2>) -> SVector<f64, POSITION_STATES> {
 fn asked_by(asked: &Asked, reference: &ReferenceMotion<2>) -> Asked {
     Asked {
         speed_m_s: asked.speed_m_s.max(reference.velocity.norm()),
-        jerk_m_s3: asked.jerk_m_s3.max(reference.jerk.norm()),
-        snap_m_s4: asked.snap_m_s4.max(reference.snap.norm()),
+        jerk_m_s3: asked.jerk_m_s3.max(reference.thrust_jerk.norm()),
+        snap_m_s4: asked.snap_m_s4.max(reference.thrust_snap.norm()),
     }
 }
 

@@ -12,12 +12,14 @@ pub struct ReferenceMotion<const AXES: usize> {
     pub velocity: SVector<f64, AXES>,
     /// Acceleration.
     pub acceleration: SVector<f64, AXES>,
+    /// Its derivative.
+    pub jerk: SVector<f64, AXES>,
     /// Acceleration that the thrust must make: with drag.
     pub thrust: SVector<f64, AXES>,
     /// Its derivative.
-    pub jerk: SVector<f64, AXES>,
+    pub thrust_jerk: SVector<f64, AXES>,
     /// The derivative of that.
-    pub snap: SVector<f64, AXES>,
+    pub thrust_snap: SVector<f64, AXES>,
     /// Time since the previous sample, s; 0 before the first one.
     pub interval_s: f64,
 }
@@ -30,9 +32,10 @@ impl<const AXES: usize> Default for ReferenceMotion<AXES> {
             position: zero,
             velocity: zero,
             acceleration: zero,
-            thrust: zero,
             jerk: zero,
-            snap: zero,
+            thrust: zero,
+            thrust_jerk: zero,
+            thrust_snap: zero,
             interval_s: 0.0,
         }
     }
@@ -42,14 +45,17 @@ impl<const AXES: usize> ReferenceMotion<AXES> {
     /// Whether it stays where it is.
     pub fn is_at_rest(&self) -> bool {
         let zero: SVector<f64, AXES> = SVector::zeros();
-        [self.velocity, self.acceleration, self.thrust, self.jerk, self.snap].iter().all(|part| *part == zero)
+        let derivatives =
+            [self.velocity, self.acceleration, self.jerk, self.thrust, self.thrust_jerk, self.thrust_snap];
+        derivatives.iter().all(|part| *part == zero)
     }
 
-    /// Increments \[Δposition, Δvelocity, Δacceleration, Δjerk, Δsnap\] of each axis since the previous sample. Those of position and
-    /// velocity as far as the derivatives explain them: a jump of the position is not motion, and a set-point at rest has none.
+    /// Increments of each axis since the previous sample: those of position and velocity, and of the thrust and its two derivatives.
+    /// Those of position and velocity as far as the derivatives explain them: a jump of the position is not motion, and a set-point at
+    /// rest has none.
     ///
-    /// Hermite's rule, exact for constant jerk:
-    /// Δp = T (v + v⁻)/2 − T² (a − a⁻)/12,  Δv = T (a + a⁻)/2
+    /// Hermite's rule, exact for a jerk that changes evenly:
+    /// Δp = T (v + v⁻)/2 − T² (a − a⁻)/12,  Δv = T (a + a⁻)/2 − T² (j − j⁻)/12
     ///
     /// At the first sample a controller takes the vehicle for one that was at rest there. The reference was so, too, and its whole
     /// velocity is an increment: a vehicle that moves with it has nothing to explain.
@@ -57,23 +63,31 @@ impl<const AXES: usize> ReferenceMotion<AXES> {
         let t = self.interval_s;
         core::array::from_fn(|axis| {
             if previous.interval_s == 0.0 {
-                return [0.0, self.velocity[axis], self.thrust[axis], self.jerk[axis], self.snap[axis]];
+                let [thrust, jerk, snap] =
+                    [self.thrust, self.thrust_jerk, self.thrust_snap].map(|part| part[axis]);
+                return [0.0, self.velocity[axis], thrust, jerk, snap];
             }
-            let (v, v_before) = (self.velocity[axis], previous.velocity[axis]);
-            let (a, a_before) = (self.acceleration[axis], previous.acceleration[axis]);
+            let hermite = |rate: &SVector<f64, AXES>, before: &SVector<f64, AXES>, change: f64| {
+                t * (rate[axis] + before[axis]) / 2.0 - t * t * change / 12.0
+            };
+            let change = |now: &SVector<f64, AXES>, before: &SVector<f64, AXES>| now[axis] - before[axis];
             [
-                t * (v + v_before) / 2.0 - t * t * (a - a_before) / 12.0,
-                t * (a + a_before) / 2.0,
-                self.thrust[axis] - previous.thrust[axis],
-                self.jerk[axis] - previous.jerk[axis],
-                self.snap[axis] - previous.snap[axis],
+                hermite(
+                    &self.velocity,
+                    &previous.velocity,
+                    change(&self.acceleration, &previous.acceleration),
+                ),
+                hermite(&self.acceleration, &previous.acceleration, change(&self.jerk, &previous.jerk)),
+                change(&self.thrust, &previous.thrust),
+                change(&self.thrust_jerk, &previous.thrust_jerk),
+                change(&self.thrust_snap, &previous.thrust_snap),
             ]
         })
     }
 
-    /// By how much jerk and snap have jumped since the previous sample, as far as the snap in between does not explain it.
+    /// By how much the thrust's jerk and snap have jumped since the previous sample, as far as the snap in between does not explain it.
     pub(crate) fn jumps_since(&self, previous: &Self) -> [SVector<f64, AXES>; 2] {
-        let explained = (self.snap + previous.snap) * (self.interval_s / 2.0);
-        [self.jerk - previous.jerk - explained, self.snap - previous.snap]
+        let explained = (self.thrust_snap + previous.thrust_snap) * (self.interval_s / 2.0);
+        [self.thrust_jerk - previous.thrust_jerk - explained, self.thrust_snap - previous.thrust_snap]
     }
 }
