@@ -186,9 +186,10 @@ struct Motion {
 }
 
 impl Motion {
-    fn new(design: &StabilizedDesign, states: usize, inputs: usize, end: usize) -> Self {
+    fn new(design: &StabilizedDesign, end: usize) -> Self {
         let plan = design.plan();
-        let size = plan.transition.nrows();
+        let (size, inputs) = (plan.transition.nrows(), plan.move_of.nrows());
+        let states = design.model().plant().states();
         let mut power = DMatrix::identity(size, size);
         let mut moves = DMatrix::zeros(inputs, size);
         let mut motion = DMatrix::zeros(states, size);
@@ -228,24 +229,23 @@ impl LimitedSignals<f64> {
         };
         let end = limits.iter().flat_map(|limit| &limit.samples).max().map_or(0, |last| last + 1);
         let plant = design.model().plant();
-        let sizes @ [states, inputs, _] = [plant.states(), plant.inputs(), plant.outputs()];
-        let motion = Motion::new(design, states, inputs, end);
+        let motion = Motion::new(design, end);
         let mut bounds = 0;
         let mut signals = Vec::new();
         for limit in limits {
             let components = limit.directions.ncols();
-            validate::shape("C of a limit", &limit.state, (components, states))?;
-            validate::shape("D of a limit", &limit.input, (components, inputs))?;
+            validate::shape("C of a limit", &limit.state, (components, plant.states()))?;
+            validate::shape("D of a limit", &limit.input, (components, plant.inputs()))?;
             validate::shape(
                 "directions of a limit",
                 &limit.directions,
                 (limit.directions.nrows().min(DIRECTIONS), components.min(COMPONENTS)),
             )?;
-            signals.push(placed.add(limit, sizes, &motion, coordinates, slack_unit, bounds));
+            signals.push(placed.add(limit, &motion, coordinates, slack_unit, bounds));
             bounds += limit.directions.nrows();
         }
         for component in 0..COMPONENTS {
-            placed.add_component(component, sizes, &signals);
+            placed.add_component(component, [plant.states(), plant.outputs()], &signals);
         }
         if placed.count > SIGNALS {
             return Err(DesignError::Dimension {
@@ -262,31 +262,30 @@ impl LimitedSignals<f64> {
     fn add(
         &mut self,
         limit: &SignalLimit,
-        [states, inputs, outputs]: [usize; 3],
         motion: &Motion,
         coordinates: &PlanCoordinates,
         slack_unit: f64,
         first_bound: usize,
     ) -> Vec<SignalAt> {
-        let terms = coordinates.by_z.nrows();
+        let (terms, augmented) = (coordinates.by_z.nrows(), coordinates.unlimited.ncols());
         let mut signals = Vec::new();
         let mut samples = limit.samples.clone();
         samples.sort_unstable();
         samples.dedup();
         for m in samples {
             let signal = product(&limit.state, &motion.states[m]) + product(&limit.input, &motion.moves[m]);
-            let of_eta = signal.columns(states + outputs, terms);
+            let of_eta = signal.columns(augmented, terms);
             let of_plan = of_eta * &coordinates.by_z;
             if of_plan.amax() > 0.0 {
-                let of_state = signal.columns(0, states + outputs) + of_eta * &coordinates.unlimited;
+                let of_state = signal.columns(0, augmented) + of_eta * &coordinates.unlimited;
                 self.by_sample.push((m, self.limits.len(), signals.len()));
                 signals.push(SignalAt { of_state, of_plan });
             }
         }
         let components = limit.directions.ncols();
         let (mut state, mut input) = (SparseColumns::default(), SparseColumns::default());
-        state.add_block(0, components, states, |row, at| limit.state[(row, at)]);
-        input.add_block(0, components, inputs, |row, at| limit.input[(row, at)]);
+        state.add_block(0, components, limit.state.ncols(), |row, at| limit.state[(row, at)]);
+        input.add_block(0, components, limit.input.ncols(), |row, at| limit.input[(row, at)]);
         let first_row = self.scales.len();
         for sample in 0..signals.len() {
             let row = |side| [self.limits.len(), sample, side].map(|index| index as u16);
@@ -320,12 +319,7 @@ impl LimitedSignals<f64> {
     }
 
     /// Places a component of all limits that have it behind those before, `signals` being those of each limit.
-    fn add_component(
-        &mut self,
-        component: usize,
-        [states, _, outputs]: [usize; 3],
-        signals: &[Vec<SignalAt>],
-    ) {
+    fn add_component(&mut self, component: usize, [states, outputs]: [usize; 2], signals: &[Vec<SignalAt>]) {
         let before: usize =
             self.limits.iter().map(|limit| limit.samples * limit.components.min(component)).sum();
         let mut rows = Vec::new();

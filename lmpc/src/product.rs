@@ -9,7 +9,6 @@ use nalgebra::DMatrix;
 ///
 /// # Panics
 /// Unless A has as many columns as B has rows.
-#[inline(never)]
 pub(crate) fn product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
     assert_eq!(a.ncols(), b.nrows(), "columns of A and rows of B");
     let rows = a.nrows();

@@ -40,6 +40,8 @@ pub(crate) struct Solution {
     pub(crate) p: DMatrix<f64>,
     /// K = (R + BᵀPB)⁻¹ BᵀPA.
     pub(crate) gain: DMatrix<f64>,
+    /// A − B K.
+    closed_loop: DMatrix<f64>,
     /// As [`riccati_residual`] has it.
     residual: f64,
 }
@@ -109,7 +111,6 @@ pub fn riccati_residual(
 
 impl Solution {
     /// That of P, unless R + BᵀPB cannot be inverted.
-    #[inline(never)]
     fn of(
         a: &DMatrix<f64>,
         b: &DMatrix<f64>,
@@ -123,12 +124,12 @@ impl Solution {
         let difference = product(&product(&a.transpose(), &p), &closed_loop) + q - &p;
         let scale = p.norm().max(q.norm());
         let residual = if scale > 0.0 { difference.norm() / scale } else { difference.norm() };
-        Some(Self { p, gain, residual })
+        Some(Self { p, gain, closed_loop, residual })
     }
 
     /// One Newton step: P of the closed loop under its gain; itself if that loop is not stable or P becomes no better.
     fn refined(self, a: &DMatrix<f64>, b: &DMatrix<f64>, q: &DMatrix<f64>, r: &DMatrix<f64>) -> Self {
-        let closed_loop_t = (a - product(b, &self.gain)).transpose();
+        let closed_loop_t = self.closed_loop.transpose();
         let stage_cost = q + product(&product(&self.gain.transpose(), r), &self.gain);
         let newton = solve_stein(&closed_loop_t, &closed_loop_t, &stage_cost)
             .and_then(|newton| Self::of(a, b, q, r, symmetrized(&newton)));

@@ -4,13 +4,12 @@ use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
 use crate::common::Bench;
-use crate::common::requests::set_parameter;
+use crate::common::requests::{set_parameter, set_parameter_as};
 use autopilot::Autopilot;
 use autopilot::codec::Message;
 use clap::Parser;
 use mavlink::dialects::ardupilotmega::{
-    MavMessage, MavParamType, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
-    PARAM_VALUE_DATA,
+    MavMessage, MavParamType, PARAM_REQUEST_LIST_DATA, PARAM_REQUEST_READ_DATA, PARAM_VALUE_DATA,
 };
 use sitl::configuration::{Arguments, ListFormat, Settings, parameter_list};
 use vehicle::identity::Identity;
@@ -184,14 +183,8 @@ fn a_value_that_would_lose_the_vehicle_is_refused_in_flight() {
     let mut bench = Bench::hovering(Identity::Px4);
     let before = answers(&mut bench, read("ROTOR_TIME_CONST"));
     // 2 is the paper's; integers travel as their bytes.
-    let paper = PARAM_SET_DATA {
-        param_value: f32::from_bits(2),
-        target_system: 1,
-        target_component: 1,
-        param_id: "CTRL_MODEL".into(),
-        param_type: MavParamType::MAV_PARAM_TYPE_INT32,
-    };
-    answers(&mut bench, MavMessage::PARAM_SET(paper));
+    let paper = set_parameter_as("CTRL_MODEL", f32::from_bits(2), MavParamType::MAV_PARAM_TYPE_INT32);
+    answers(&mut bench, paper);
     bench.heard.clear();
     let heard = answers(&mut bench, set_parameter("ROTOR_TIME_CONST", 0.3));
     assert_eq!(heard.iter().map(|told| told.param_value).collect::<Vec<_>>(), [before[0].param_value]);

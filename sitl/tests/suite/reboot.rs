@@ -2,10 +2,11 @@
 
 use crate::common;
 use crate::common::Bench;
+use crate::common::requests::set_parameter_as;
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::{
     FailureUnit, MAG_CAL_REPORT_DATA, MagCalStatus, MavCmd, MavMessage, MavParamType, MavResult,
-    PARAM_REQUEST_READ_DATA, PARAM_SET_DATA,
+    PARAM_REQUEST_READ_DATA,
 };
 use sitl::record::Digest;
 use vehicle::identity::Identity;
@@ -24,14 +25,7 @@ fn set(bench: &mut Bench, name: &str, value: f64) {
         (true, false) => (f32::from_bits(value as i32 as u32), MavParamType::MAV_PARAM_TYPE_INT32),
         _ => (value as f32, MavParamType::MAV_PARAM_TYPE_REAL32),
     };
-    let data = PARAM_SET_DATA {
-        param_value,
-        target_system: 1,
-        target_component: 1,
-        param_id: name.into(),
-        param_type,
-    };
-    bench.send(MavMessage::PARAM_SET(data));
+    bench.send(set_parameter_as(name, param_value, param_type));
 }
 
 fn parameter(bench: &mut Bench, name: &str) -> f64 {

@@ -1,9 +1,10 @@
 //! The wind that the vehicle holds its position in: the derived limit against flights, the warning at the start and the
 //! announcement in flight.
 
+use crate::common::requests::set_parameter;
 use crate::common::{Bench, settings};
 use clap::Parser;
-use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage, MavParamType, PARAM_SET_DATA};
+use mavlink::dialects::ardupilotmega::MavCmd;
 use quadrotor::{Configuration, ControllerKind, side_force_limit_n};
 use sitl::configuration::{Arguments, Settings};
 use sitl::hil::HilSettings;
@@ -107,14 +108,7 @@ fn it_says_once_that_it_cannot_hold_and_when_it_can_again() {
     assert_eq!(said(&bench), ["Cannot hold position in 30 m/s wind"]);
     assert!(farthest_m(&mut bench, 5.0) > 5.0);
     // It may lean farther now, and comes back.
-    let set = PARAM_SET_DATA {
-        param_value: 0.9,
-        target_system: 1,
-        target_component: 1,
-        param_id: "LIM_TILT".into(),
-        param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-    };
-    bench.send(MavMessage::PARAM_SET(set));
+    bench.send(set_parameter("LIM_TILT", 0.9));
     bench.fly(60.0);
     assert_eq!(said(&bench), ["Cannot hold position in 30 m/s wind", "Holding position again"]);
     assert!(farthest_m(&mut bench, 1.0) < 0.3);

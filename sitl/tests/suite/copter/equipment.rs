@@ -4,6 +4,7 @@
 
 use super::flier::*;
 use crate::common::Bench;
+use crate::common::requests::local_target;
 use autopilot::codec::{Frame, Version};
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::plan::PlanKind;
@@ -308,15 +309,7 @@ fn a_mount_looks_at_places_and_at_other_systems_within_its_limits() {
     // It is not heard any more: the mount stays where it is, while the vehicle climbs.
     flier.fly(3.5);
     let [_, held, _] = mount_deg(&mut flier);
-    let up = SET_POSITION_TARGET_LOCAL_NED_DATA {
-        target_system: 1,
-        target_component: 1,
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        type_mask: PositionTargetTypemask::from_bits_retain(0x0df8),
-        z: -50.0,
-        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-    };
-    flier.bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(up));
+    flier.bench.send(local_target(0x0df8, [0.0, 0.0, -50.0], [0.0; 3]));
     flier.wait("50 m", 30.0, |flier| flier.height_m() > 49.0);
     let [_, still, _] = mount_deg(&mut flier);
     assert!((still - held).abs() < 0.1, "{held} {still}");
@@ -342,16 +335,7 @@ fn a_switch_locks_the_mount_on_what_it_sees() {
     flier.rc(10, 1500);
     flier.fly(1.0);
     let heading_rad = flier.vehicle().outputs().attitude_rad.z;
-    let up = SET_POSITION_TARGET_LOCAL_NED_DATA {
-        target_system: 1,
-        target_component: 1,
-        coordinate_frame: MavFrame::MAV_FRAME_LOCAL_NED,
-        type_mask: PositionTargetTypemask::from_bits_retain(0x0df8),
-        x: 60.0,
-        z: -40.0,
-        ..SET_POSITION_TARGET_LOCAL_NED_DATA::default()
-    };
-    flier.bench.send(MavMessage::SET_POSITION_TARGET_LOCAL_NED(up));
+    flier.bench.send(local_target(0x0df8, [60.0, 0.0, -40.0], [0.0; 3]));
     flier.wait("there", 60.0, |flier| flier.distance_m() > 59.5 && flier.speed_m_s() < 0.1);
     let [_, pitch, yaw] = mount_deg(&mut flier);
     assert!((pitch + 45.0).abs() < 1.0 && yaw.abs() < 1.0, "{pitch} {yaw}");
