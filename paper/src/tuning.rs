@@ -80,6 +80,7 @@ fn compared_loops(
         both(5.0, 0.0),
         both(20.0, 0.0),
         both(4.0, 3.0),
+        both(5.0, 5.0),
         moving(5.0, [0.0, 3.0], period_s),
         moving(0.0, [0.0, 6.0], period_s),
     ];
@@ -261,13 +262,30 @@ mod tests {
     use lmpc::TrialCost;
     use quadrotor::Configuration;
 
-    use super::{Candidate, MOST_LOSS, compared_loops};
+    use super::{Candidate, Compared, MOST_LOSS, compared_loops};
+    use crate::constrained_step::axis::Axis;
 
-    /// What ships loses at most 1 % on every step when N is off by one or a by 0.05. Plans of the position break no limit in a gap
-    /// between its samples: violations stay below a thousandth of the cost.
+    /// Each step of the report is one of those on which designs are compared.
+    fn assert_has_the_steps_of_the_report(all: &[Compared; 4]) {
+        for axis in Axis::all().expect("loops") {
+            let compared = all.iter().find(|compared| compared.name.starts_with(axis.name)).expect("a loop");
+            for step in &axis.steps {
+                let parts: Vec<String> = match step.goal[..] {
+                    [goal, 0.0] => vec![goal.to_string()],
+                    _ => step.goal.iter().map(ToString::to_string).collect(),
+                };
+                let name = parts.join(", ");
+                assert!(compared.trials.iter().any(|(trial, _)| *trial == name), "{}", step.problem);
+            }
+        }
+    }
+
+    /// What ships loses at most 1 % on every step when N is off by one or a by 0.05, and so on those of the report. Plans of the position
+    /// break no limit in a gap between its samples: violations stay below a thousandth of the cost.
     #[test]
     fn the_shipped_designs_may_be_off_by_one() {
         let all = compared_loops(&Configuration::default(), Candidate::is_beside).expect("loops");
+        assert_has_the_steps_of_the_report(&all);
         for compared in &all {
             assert!(compared.search.candidates().len() >= 4, "{}", compared.name);
             assert!(!compared.trials.is_empty(), "{}: the shipped design fails", compared.name);

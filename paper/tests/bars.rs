@@ -1,4 +1,4 @@
-//! The bars against flights and numbers computed here. Whether a bar is kept is reported, not tested.
+//! The bars against flights and numbers computed here. Whether they are kept is tested with the results.
 
 use std::sync::OnceLock;
 
@@ -23,9 +23,22 @@ fn find<'a>(results: &'a [BarResult], flyer: Flyer, figure: &str) -> &'a BarResu
 #[test]
 fn the_table_has_every_row() {
     let count = |row: &str| all_plans().iter().filter(|plan| plan.row.name() == row).count();
-    let rows = ["cruise", "goal", "path", "beyond-limits", "side-force", "mass", "rotor-lag", "spin"];
-    assert_eq!(rows.map(count), [2, 11, 4, 4, 1, 12, 4, 4]);
-    assert_eq!(rows.map(count).iter().sum::<usize>(), all_plans().len());
+    let rows = [
+        ("cruise", 2),
+        ("goal", 11),
+        ("path", 4),
+        ("beyond-limits", 9),
+        ("side-force", 2),
+        ("mass", 12),
+        ("mass-goal", 8),
+        ("rotor-lag", 20),
+        ("spin", 4),
+        ("unforeseen", 8),
+    ];
+    for (row, flights) in rows {
+        assert_eq!(count(row), flights, "{row}");
+    }
+    assert_eq!(rows.iter().map(|(_, flights)| flights).sum::<usize>(), all_plans().len());
     let mut names: Vec<&str> = all_plans().iter().map(|plan| plan.name.as_str()).collect();
     names.sort_unstable();
     names.dedup();
@@ -104,6 +117,32 @@ fn the_geometric_controller_follows_paths() {
         assert!(rms_cm < most_cm, "{name}: {rms_cm}");
     }
     assert!(flown(plan("1 m north"), &[Flyer::Geometric]).results.is_empty());
+}
+
+/// What a demand that nobody foresees asks for, and where the vehicle should be.
+#[test]
+fn unforeseen_references_are_what_they_are_called() {
+    let bare = plan("circle of 5 m at 0.5 rad/s, positions at 10 Hz");
+    for (time_s, set_s) in [(7.25, 7.2), (12.3, 12.3), (19.999, 19.9)] {
+        let reference = bare.reference(time_s);
+        assert_eq!(reference, PositionReference::goal(reference.position_m.into(), 0.0), "positions alone");
+        assert!((reference.position_m - bare.place_m(set_s)).norm() < 1e-9);
+        assert!((bare.place_m(time_s).norm() - 5.0).abs() < 1e-12);
+    }
+    let jumping = plan("goals within 4 m that jump each second");
+    let goals_m: Vec<_> =
+        (0..20).map(|second| jumping.reference(f64::from(second) + 0.5).position_m).collect();
+    for (second, pair) in goals_m.windows(2).enumerate() {
+        assert!((pair[1] - pair[0]).norm() > 1.0, "{second}: {pair:?}");
+        assert_eq!(jumping.reference(second as f64 + 0.99).position_m, pair[0]);
+    }
+    assert!(goals_m.iter().all(|goal_m| goal_m.xy().amax() <= 4.0 && goal_m.z.abs() <= 4.0 / 3.0));
+    assert_eq!(jumping.reference(25.0).position_m.norm(), 0.0);
+    let reversed = plan("2 m/s, reversed each 5 s");
+    for (time_s, north_m, north_m_s) in [(3.0, 6.0, 2.0), (6.0, 8.0, -2.0), (11.0, 2.0, 2.0)] {
+        let reference = reversed.reference(time_s);
+        assert!((reference.position_m.x - north_m).abs() < 1e-12 && reference.velocity_m_s.x == north_m_s);
+    }
 }
 
 /// What cannot be designed is reported with its reason, and keeps no bar.

@@ -2,8 +2,11 @@
 
 use std::sync::OnceLock;
 
-use paper::bars::{BarResult, OptimumResult};
-use paper::{CostResult, FlightResult, Page, Progress, Results, png, report, results, schema};
+use paper::bars::{BarResult, Flyer, OptimumResult, judged_random_flights};
+use paper::{
+    CostResult, FlightResult, Page, Progress, Results, png, report, results, schema, shaped_flights,
+};
+use quadrotor::Configuration;
 
 /// All results, with few random flights.
 fn all() -> &'static Results {
@@ -172,8 +175,19 @@ fn random_flights_arrive() {
 /// Every flight of the table of bars, of each of the three kinds, with the random flights and the times.
 #[test]
 fn bars_are_reported_for_every_kind() {
-    let rows =
-        ["cruise", "goal", "path", "beyond-limits", "side-force", "mass", "rotor-lag", "spin", "random"];
+    let rows = [
+        "cruise",
+        "goal",
+        "path",
+        "beyond-limits",
+        "side-force",
+        "mass",
+        "mass-goal",
+        "rotor-lag",
+        "spin",
+        "unforeseen",
+        "random",
+    ];
     for controller in ["LMPC", "SS-MPC", "DLQR"] {
         for row in rows.into_iter().chain(["sample-time"]) {
             let of = |bar: &&BarResult| bar.row == row && bar.controller == controller;
@@ -185,6 +199,52 @@ fn bars_are_reported_for_every_kind() {
     let random = all().robustness.iter().find(|result| result.controller == "LMPC, defaults").unwrap();
     let share = 100.0 * f64::from(random.speed_violations) / f64::from(random.flights);
     assert_eq!(all().bars.iter().find(speed).unwrap().value, Some(share));
+}
+
+/// Bars that Laguerre MPC misses: flight and figure. Each is in the report, and each that is mended leaves this list.
+const MISSED: [(&str, &str); 18] = [
+    ("figure-eight of 8 m at 1 rad/s, tilt 1.0 rad, speed 20 m/s", "RMS distance, cm"),
+    ("figure-eight of 8 m at 1.6 rad/s, tilt 1.0 rad, speed 20 m/s", "RMS distance, cm"),
+    ("figure-eight of 6 m at 0.7 rad/s, default limits", "RMS distance, cm"),
+    ("5 m north, mass believed 0.5 of the true one", "settled within 2 cm, s"),
+    ("5 m down, mass believed 0.5 of the true one", "beyond a limit, %"),
+    ("20 m north, 20 m east, 10 m down, mass believed 0.5 of the true one", "overshoot, %"),
+    ("20 m north, 20 m east, 10 m down, mass believed 0.5 of the true one", "settled within 2 cm, s"),
+    ("20 m north, 20 m east, 10 m down, mass believed 0.5 of the true one", "beyond a limit, %"),
+    ("5 m north, rotor lag 0.02 s", "settled within 2 cm, s"),
+    ("20 m north, rotor lag 0.1 s", "settled within 2 cm, s"),
+    ("5 m down, rotor lag 0.15 s", "settled within 2 cm, s"),
+    ("5 m north, 5 m east, 5 m up, rotor lag 0.15 s", "settled within 2 cm, s"),
+    ("goals within 4 m that jump each second", "RMS distance, cm"),
+    ("goals within 30 m that jump each second", "beyond a limit, %"),
+    ("circle of 5 m at 0.5 rad/s, positions at 10 Hz", "RMS distance, cm"),
+    ("circle of 4 m at 1 rad/s, positions at 10 Hz", "RMS distance, cm"),
+    ("figure-eight of 6 m at 0.5 rad/s, positions at 10 Hz", "RMS distance, cm"),
+    ("5 m/s, reversed each 5 s", "RMS distance, cm"),
+];
+
+/// Laguerre MPC keeps every bar of every flight but those that are known to be missed. Times are not judged, and random flights are below.
+#[test]
+fn the_bars_are_kept() {
+    let judged: Vec<&BarResult> = all()
+        .bars
+        .iter()
+        .filter(|bar| bar.controller == "LMPC" && !["random", "sample-time"].contains(&bar.row))
+        .filter(|bar| bar.passed.is_some())
+        .collect();
+    assert!(judged.len() > 200, "{}", judged.len());
+    let missed: Vec<&&BarResult> = judged.iter().filter(|bar| bar.passed == Some(false)).collect();
+    let named: Vec<(&str, &str)> = missed.iter().map(|bar| (bar.flight.as_str(), bar.figure)).collect();
+    assert_eq!(named, MISSED, "{missed:#?}");
+}
+
+/// The first hundred of the thousand random flights of the report.
+#[test]
+fn the_bars_of_random_flights_are_kept() {
+    let flights = shaped_flights("LMPC", &Flyer::LaguerreMpc.applied(&Configuration::default()), 100);
+    for bar in judged_random_flights(&flights, "LMPC") {
+        assert_eq!(bar.passed, Some(true), "{bar:?}");
+    }
 }
 
 /// Optimal flights stand beside those of the controllers, with what they cost more.

@@ -3,7 +3,7 @@
 use lmpc::{ClosedLoop, DesignSearch, SignalLimit, StabilizedMpc, Trial, unknowns};
 use nalgebra::Vector1;
 
-use crate::common::explicit_plan::Case;
+use crate::common::lagged_integrators::Case;
 
 #[test]
 fn excess_and_loss_are_shares_of_the_least_cost_on_each_trial() {

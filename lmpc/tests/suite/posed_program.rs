@@ -5,7 +5,7 @@ use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, Nonnegat
 use lmpc::{Controller, ControllerState, DesignError, PosedProgram, Sample, SignalLimit, StabilizedMpc};
 use nalgebra::{DMatrix, DVector, Vector1, Vector3};
 
-use crate::common::explicit_plan::Case;
+use crate::common::lagged_integrators::Case;
 
 const SLACK_COST: f64 = 1e4;
 type Law = StabilizedMpc<3, 1, 1, 6>;

@@ -4,7 +4,8 @@ use lmpc::{Augmented, DesignError, Dlqr, LaguerreBasis, StabilizedDesign, Weight
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 
-use crate::common::explicit_plan::{Case, Start, case, simulate, simulated_cost};
+use crate::common::explicit_plan::{Start, simulate, simulated_cost};
+use crate::common::lagged_integrators::{Case, case};
 use crate::common::relative_difference;
 
 /// Samples after which every plan here has settled.

@@ -7,7 +7,8 @@ use lmpc::{
 use nalgebra::{DMatrix, DVector, SVector, Vector1, Vector3};
 use proptest::prelude::*;
 
-use crate::common::explicit_plan::{Case, Optimum, Start, case, clarabel, simulate, simulated_cost};
+use crate::common::explicit_plan::{Optimum, Start, clarabel, simulate, simulated_cost};
+use crate::common::lagged_integrators::{Case, case};
 
 /// Up to 6 terms and the slack.
 const E: usize = 7;

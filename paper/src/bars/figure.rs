@@ -57,9 +57,10 @@ fn figure(name: &'static str, value: f64, bar: Bar) -> Figure {
 pub fn figures(plan: &Plan, track: &Track) -> Vec<Figure> {
     match (plan.row, plan.demand) {
         (Row::Cruise, Demand::Goal(goal_m)) => cruise(plan, track, goal_m),
-        (Row::Goal, Demand::Goal(goal_m)) => goal(plan, track, goal_m),
+        (Row::Goal | Row::MassGoal, Demand::Goal(goal_m)) => goal(plan, track, goal_m),
         (Row::RotorLag, Demand::Goal(goal_m)) => rotor_lag(plan, track, goal_m),
-        (Row::Path | Row::BeyondLimits, _) | (Row::Cruise | Row::Goal | Row::RotorLag, Demand::Path(_)) => {
+        (Row::Unforeseen, _) => unforeseen(plan, track),
+        (Row::Path | Row::BeyondLimits | Row::Cruise | Row::Goal | Row::MassGoal | Row::RotorLag, _) => {
             path(plan, track)
         }
         (Row::SideForce, _) => vec![figure(
@@ -109,12 +110,17 @@ fn excess_percent(plan: &Plan, track: &Track) -> f64 {
     100.0 * track.limit_excess(&plan.configuration.limits, &plan.configuration.airframe).max(0.0)
 }
 
-fn goal(plan: &Plan, track: &Track, goal_m: [f64; 3]) -> Vec<Figure> {
-    let settled_s = match goal_m {
+/// When a raw goal should be reached, s.
+fn soon_s(goal_m: [f64; 3]) -> f64 {
+    match goal_m {
         [5.0, 0.0, 0.0] => 5.5,
         [20.0, 0.0, 0.0] => 8.0,
         _ => f64::INFINITY,
-    };
+    }
+}
+
+fn goal(plan: &Plan, track: &Track, goal_m: [f64; 3]) -> Vec<Figure> {
+    let settled_s = soon_s(goal_m);
     vec![
         figure(OVERSHOOT, 100.0 * track.overshoot(goal_m), Bar::AtMost(4.0)),
         figure(SETTLED, track.settled_s(), Bar::NoMoreThanRegulator(settled_s)),
@@ -127,9 +133,12 @@ fn goal(plan: &Plan, track: &Track, goal_m: [f64; 3]) -> Vec<Figure> {
 fn path(plan: &Plan, track: &Track) -> Vec<Figure> {
     let counted = track.last(PATH_LAST_S);
     let (most_rms_cm, most_cm) = match plan.demand {
-        _ if plan.row != Row::Path => (Bar::TimesBest(1.1), Bar::None),
+        // Bounded: no farther away than twice the width of the path.
+        Demand::Path(path) if plan.row == Row::BeyondLimits => {
+            (Bar::TimesBest(1.1), Bar::AtMost(400.0 * path.size_m))
+        }
         Demand::Path(path) => (Bar::AtMost(path.bar_cm()), Bar::None),
-        Demand::Goal(_) => (Bar::None, Bar::None),
+        _ => (Bar::None, Bar::None),
     };
     vec![
         figure("RMS distance, cm", 100.0 * rms(counted, distance), most_rms_cm),
@@ -137,6 +146,19 @@ fn path(plan: &Plan, track: &Track) -> Vec<Figure> {
         figure("largest distance in the start, cm", 100.0 * largest(start(track), distance), Bar::None),
         figure("largest tilt, °", largest(counted, Moment::tilt_rad).to_degrees(), Bar::None),
     ]
+}
+
+fn unforeseen(plan: &Plan, track: &Track) -> Vec<Figure> {
+    let counted = track.last(PATH_LAST_S);
+    let mut figures = vec![
+        figure("RMS distance, cm", 100.0 * rms(counted, distance), Bar::TimesBest(1.1)),
+        figure("largest distance, cm", 100.0 * largest(counted, distance), Bar::None),
+        figure(EXCESS, excess_percent(plan, track), Bar::AtMost(1.0)),
+    ];
+    if matches!(plan.demand, Demand::Jumps(_)) {
+        figures.push(figure(SETTLED, track.settled_s(), Bar::None));
+    }
+    figures
 }
 
 fn start(track: &Track) -> &[Moment] {
@@ -162,6 +184,7 @@ fn rotor_lag(plan: &Plan, track: &Track, goal_m: [f64; 3]) -> Vec<Figure> {
     let lag = plan.configuration.airframe.rotor_time_constant_s;
     let slower = (lag / Airframe::default().rotor_time_constant_s).max(1.0);
     let last = track.last(5.0);
+    let settled_s = soon_s(goal_m);
     vec![
         figure(
             "RMS torque at the end, N·m",
@@ -175,7 +198,7 @@ fn rotor_lag(plan: &Plan, track: &Track, goal_m: [f64; 3]) -> Vec<Figure> {
         ),
         figure(OVERSHOOT, 100.0 * track.overshoot(goal_m), Bar::AtMost(4.0)),
         // The lag is one of the times that the loop is made of: its square root scales milder than all of them together.
-        figure(SETTLED, track.settled_s(), Bar::AtMost(5.5 * slower.sqrt())),
+        figure(SETTLED, track.settled_s(), Bar::NoMoreThanRegulator(settled_s * slower.sqrt())),
         figure(EXCESS, excess_percent(plan, track), Bar::AtMost(1.0)),
     ]
 }

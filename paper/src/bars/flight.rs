@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use super::flyer::Flyer;
 use super::geometric::{Geometric, SAMPLE_S};
-use super::plan::{Demand, Plan};
+use super::plan::Plan;
 use super::track::{Moment, STEP_US, Track};
 
 /// Integration steps of the plant in a sample of the geometric controller.
@@ -23,9 +23,6 @@ pub enum Lost {
     /// The flight diverged.
     #[error("lost: {0}")]
     Diverged(#[from] SimulationError),
-    /// The geometric controller follows paths only.
-    #[error("the geometric controller needs a path")]
-    NoPath,
 }
 
 /// Flies.
@@ -34,14 +31,13 @@ pub enum Lost {
 /// Why there is no flight.
 pub fn fly(plan: &Plan, flyer: Flyer) -> Result<Track, Lost> {
     let configuration = flyer.applied(&plan.configuration);
-    match (flyer, plan.demand) {
-        (Flyer::Geometric, Demand::Path(path)) => {
-            let controller = Geometric::new(&configuration, path)?;
-            Ok(fly_plant(plan, &configuration, |time_s, plant| controller.rotor_speeds_rad_s(time_s, plant)))
-        }
-        (Flyer::Geometric, Demand::Goal(_)) => Err(Lost::NoPath),
-        _ => fly_loop(plan, &configuration),
+    if flyer == Flyer::Geometric {
+        let controller = Geometric::new(&configuration, |time_s| plan.reference(time_s))?;
+        return Ok(fly_plant(plan, &configuration, |time_s, plant| {
+            controller.rotor_speeds_rad_s(time_s, plant)
+        }));
     }
+    fly_loop(plan, &configuration)
 }
 
 fn steps(plan: &Plan) -> u64 {
@@ -66,7 +62,7 @@ fn fly_loop(plan: &Plan, configuration: &Configuration) -> Result<Track, Lost> {
             body_rate_rad_s: outputs.body_rate_rad_s,
             thrust_n: outputs.thrust_n,
             torque_n_m: outputs.torque_n_m,
-            reference_m: plan.reference(time_s).position_m,
+            reference_m: plan.place_m(time_s),
         });
     }
     Ok(track)
@@ -87,7 +83,7 @@ fn fly_plant(
             time_s,
             &state,
             &wrench_of_rotors(plant.airframe(), &state.rotor_speed_rad_s),
-            plan.reference(time_s).position_m,
+            plan.place_m(time_s),
         ));
         let inputs = PlantInputs {
             disturbance: plan.disturbance(),

@@ -15,7 +15,7 @@ pub enum Flyer {
     Regulator,
     /// The same behind the governor, which moves distant set-points closer.
     GovernedRegulator,
-    /// Lee's geometric controller with feed-forward from differential flatness. It knows no limits but the rotors'.
+    /// Lee's geometric controller with feed-forward from differential flatness, which knows no limits but the rotors'.
     Geometric,
 }
 

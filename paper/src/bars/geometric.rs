@@ -3,9 +3,10 @@
 //! “Minimum snap trajectory generation and control for quadrotors”, ICRA 2011.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use quadrotor::{Configuration, ConfigurationError, GRAVITY_M_S2, Mixer, PlantState, Wrench};
-
-use super::path::Path;
+use quadrotor::{
+    Configuration, ConfigurationError, GRAVITY_M_S2, Mixer, PlantState, PositionReference, Wrench,
+    commanded_tilt_rad,
+};
 
 /// How often it samples, s: as the cascade's attitude controller.
 pub const SAMPLE_S: f64 = 0.01;
@@ -16,19 +17,22 @@ const ATTITUDE_RAD_S: f64 = 12.0;
 /// Step of the differences that make rate and acceleration of the reference's attitude, s.
 const DIFFERENCE_S: f64 = 1e-3;
 
-/// The controller of one vehicle on one path.
-pub struct Geometric {
+/// The controller of one vehicle under one reference.
+pub struct Geometric<R> {
     mixer: Mixer,
     mass_kg: f64,
     inertia_kg_m2: Vector3<f64>,
     /// The rotors answer late, and a sample is held: the feed-forward is that of so much later, s.
     lead_s: f64,
-    path: Path,
+    /// The farthest error that it answers, m, and the largest acceleration of an answer, m/s²: those of the limits of speed and tilt.
+    farthest_m: f64,
+    strongest_m_s2: f64,
+    reference: R,
 }
 
-impl Geometric {
-    /// For a vehicle, whose mass and inertia it knows as well as the cascade does.
-    pub fn new(configuration: &Configuration, path: Path) -> Result<Self, ConfigurationError> {
+impl<R: Fn(f64) -> PositionReference> Geometric<R> {
+    /// For a vehicle, whose mass and inertia it knows as well as the cascade does, and a reference over time, s.
+    pub fn new(configuration: &Configuration, reference: R) -> Result<Self, ConfigurationError> {
         let airframe = &configuration.airframe;
         let factor = configuration.controllers.mass_factor;
         Ok(Self {
@@ -36,7 +40,9 @@ impl Geometric {
             mass_kg: airframe.mass_kg * factor,
             inertia_kg_m2: Vector3::from(airframe.inertia_kg_m2) * factor,
             lead_s: airframe.rotor_time_constant_s + SAMPLE_S / 2.0,
-            path,
+            farthest_m: 2.0 * configuration.limits.speed_horizontal_m_s / POSITION_RAD_S,
+            strongest_m_s2: GRAVITY_M_S2 * commanded_tilt_rad(configuration).tan(),
+            reference,
         })
     }
 
@@ -44,13 +50,15 @@ impl Geometric {
     pub fn rotor_speeds_rad_s(&self, time_s: f64, plant: &PlantState) -> [f64; 4] {
         let body = &plant.body;
         let (rotation, rate) = (body.rotation().to_rotation_matrix(), body.body_rate_rad_s);
-        let position = body.position_m - self.path.derivative(time_s, 0);
-        let velocity = body.velocity_m_s - self.path.derivative(time_s, 1);
+        let reference = (self.reference)(time_s);
+        let position = (body.position_m - reference.position_m).cap_magnitude(self.farthest_m);
+        let velocity = body.velocity_m_s - reference.velocity_m_s;
         let feedback = -(position * POSITION_RAD_S + velocity * 2.0) * POSITION_RAD_S;
+        let feedback = feedback.cap_magnitude(self.strongest_m_s2);
 
         let later_s = time_s + self.lead_s;
-        let thrust = thrust_axis(&(self.path.derivative(later_s, 2) + feedback));
-        let wanted = attitude(&thrust_axis(&(self.path.derivative(time_s, 2) + feedback)));
+        let thrust = thrust_axis(&(self.acceleration(later_s) + feedback));
+        let wanted = attitude(&thrust_axis(&(self.acceleration(time_s) + feedback)));
         let error = wanted.transpose() * rotation;
         let attitude_error = vee(&(error.matrix() - error.transpose().matrix())) / 2.0;
         let rate_error = rate - error.transpose() * self.rate(time_s);
@@ -64,9 +72,13 @@ impl Geometric {
         self.mixer.rotor_speeds_rad_s(&Wrench { thrust_n, torque_n_m }, 0.0)
     }
 
+    fn acceleration(&self, time_s: f64) -> Vector3<f64> {
+        (self.reference)(time_s).acceleration_m_s2
+    }
+
     /// Body rate of the reference in its own axes, rad/s.
     fn rate(&self, time_s: f64) -> Vector3<f64> {
-        let at = |time_s: f64| attitude(&thrust_axis(&self.path.derivative(time_s, 2)));
+        let at = |time_s: f64| attitude(&thrust_axis(&self.acceleration(time_s)));
         let (before, after) = (at(time_s - DIFFERENCE_S), at(time_s + DIFFERENCE_S));
         (before.transpose() * after).scaled_axis() / (2.0 * DIFFERENCE_S)
     }

@@ -25,6 +25,10 @@ pub enum Row {
     RotorLag,
     /// A spin about the thrust axis.
     Spin,
+    /// Raw goals under a wrong mass.
+    MassGoal,
+    /// What nobody can foresee: goals that jump, positions alone, velocities that are reversed.
+    Unforeseen,
 }
 
 impl Row {
@@ -39,6 +43,8 @@ impl Row {
             Self::Mass => "mass",
             Self::RotorLag => "rotor-lag",
             Self::Spin => "spin",
+            Self::MassGoal => "mass-goal",
+            Self::Unforeseen => "unforeseen",
         }
     }
 }
@@ -50,6 +56,44 @@ pub enum Demand {
     Goal([f64; 3]),
     /// A trajectory with velocity and acceleration.
     Path(Path),
+    /// The positions of a trajectory alone, set ten times a second.
+    Positions(Path),
+    /// Raw goals that change each second, this far away at most, m; then the origin.
+    Jumps(f64),
+    /// North and back at a speed, m/s, that is reversed each 5 s.
+    ToAndFro(f64),
+}
+
+/// Time between positions that are given alone, s.
+const POSITIONS_S: f64 = 0.1;
+/// How many goals there are before the last one, the origin.
+const JUMPS: usize = 20;
+/// Steps of an evenly spread sequence of points in a cube: the reciprocal powers of the real root of g⁴ = g + 1.
+const SPREAD: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_2];
+/// How long a speed lasts before it is reversed, s.
+const LEG_S: f64 = 5.0;
+
+/// The goal of a second, up to a distance from the origin in each horizontal axis and to a third of it in height.
+fn jumping_goal_m(reach_m: f64, second: usize) -> [f64; 3] {
+    if second >= JUMPS {
+        return [0.0; 3];
+    }
+    let place = |axis: usize| 2.0 * (SPREAD[axis] * (second + 1) as f64).fract() - 1.0;
+    [reach_m * place(0), reach_m * place(1), reach_m / 3.0 * place(2)]
+}
+
+/// Where a vehicle is that flies north and back, and how fast.
+fn to_and_fro(speed_m_s: f64, time_s: f64) -> PositionReference {
+    let (legs, into_s) = ((time_s / LEG_S) as u64, time_s % LEG_S);
+    let (north_m, north_m_s) = if legs.is_multiple_of(2) {
+        (speed_m_s * into_s, speed_m_s)
+    } else {
+        (speed_m_s * (LEG_S - into_s), -speed_m_s)
+    };
+    PositionReference {
+        velocity_m_s: Vector3::x() * north_m_s,
+        ..PositionReference::goal([north_m, 0.0, 0.0], 0.0)
+    }
 }
 
 /// One flight.
@@ -70,9 +114,9 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Whether a flyer can do it: the geometric controller follows paths only.
+    /// Whether a flyer can do it: the geometric controller follows motions only.
     pub fn can_be_flown_by(&self, flyer: Flyer) -> bool {
-        flyer != Flyer::Geometric || matches!(self.demand, Demand::Path(_))
+        flyer != Flyer::Geometric || !matches!(self.demand, Demand::Goal(_))
     }
 
     /// What is asked for at a time.
@@ -80,6 +124,21 @@ impl Plan {
         match self.demand {
             Demand::Goal(goal_m) => PositionReference::goal(goal_m, 0.0),
             Demand::Path(path) => path.reference(time_s),
+            Demand::Positions(path) => {
+                // A time that rounding put just before an instant is that instant.
+                let set_s = (time_s / POSITIONS_S + 1e-6).floor() * POSITIONS_S;
+                PositionReference::goal(path.derivative(set_s, 0).into(), 0.0)
+            }
+            Demand::Jumps(reach_m) => PositionReference::goal(jumping_goal_m(reach_m, time_s as usize), 0.0),
+            Demand::ToAndFro(speed_m_s) => to_and_fro(speed_m_s, time_s),
+        }
+    }
+
+    /// Where the vehicle should be at a time, NED, m.
+    pub fn place_m(&self, time_s: f64) -> Vector3<f64> {
+        match self.demand {
+            Demand::Positions(path) => path.derivative(time_s, 0),
+            _ => self.reference(time_s).position_m,
         }
     }
 

@@ -28,16 +28,43 @@ const PATHS: [(Shape, f64, f64); 4] = [
     (Shape::Circle, 4.0, 1.2),
     (Shape::Circle, 4.0, 1.5),
 ];
+/// Paths beyond limits of 1 rad and 20 m/s.
+const STEEP_PATHS: [(Shape, f64, f64); 3] =
+    [(Shape::FigureEight, 8.0, 1.0), (Shape::FigureEight, 8.0, 1.6), (Shape::Circle, 8.0, 1.6)];
+/// Paths beyond the default limits: the first by 1°.
+const FAST_PATHS: [(Shape, f64, f64); 4] = [
+    (Shape::FigureEight, 6.0, 0.7),
+    (Shape::FigureEight, 6.0, 0.85),
+    (Shape::FigureEight, 6.0, 1.2),
+    (Shape::Circle, 4.0, 1.5),
+];
+/// Paths that a steady force takes beyond the default limits.
+const PUSHED_PATHS: [(Shape, f64, f64); 2] = [(Shape::FigureEight, 6.0, 0.6), (Shape::Circle, 4.0, 1.1)];
+/// The force against them, N.
+const PUSH_N: f64 = 2.0;
+/// Paths of which positions alone are given.
+const BARE_PATHS: [(Shape, f64, f64); 3] =
+    [(Shape::Circle, 5.0, 0.5), (Shape::Circle, 4.0, 1.0), (Shape::FigureEight, 6.0, 0.5)];
+/// How far away goals are that jump each second, m.
+const JUMPS_M: [f64; 2] = [4.0, 30.0];
+/// Speeds that are reversed, m/s.
+const REVERSED_M_S: [f64; 3] = [2.0, 5.0, 7.5];
 /// The last seconds of a path, over which its error counts.
 pub const PATH_LAST_S: f64 = 20.0;
 /// Time on a path between its start and the part that counts, s.
 const PATH_SETTLING_S: f64 = 5.0;
 /// The force against a cruise, N.
 const HEADWIND_N: f64 = 1.0;
-/// The side force as a share of the weight.
-const SIDE_FORCE_SHARE: f64 = 0.5;
+/// Side forces as shares of the weight, with the limit of tilt, rad.
+const SIDE_FORCES: [(f64, f64); 2] = [(0.5, 0.6), (0.6, 0.7)];
 /// Mass that the controllers believe in over the true one.
 const MASS_FACTORS: [f64; 4] = [0.5, 0.75, 1.25, 1.5];
+/// Those under which raw goals are flown.
+const GOAL_MASS_FACTORS: [f64; 2] = [0.5, 1.5];
+/// Raw goals under a wrong mass, by their index.
+const MASS_GOALS: [usize; 4] = [1, 5, 6, 9];
+/// Raw goals with slow rotors, by their index.
+const LAGGED_GOALS: [usize; 5] = [1, 2, 4, 5, 8];
 /// Rotor time constants, s.
 const ROTOR_LAGS_S: [f64; 4] = [0.02, 0.05, 0.1, 0.15];
 /// Spins about the thrust axis, rad/s.
@@ -53,10 +80,12 @@ pub fn plans(configuration: &Configuration) -> Vec<Plan> {
     plans.extend(goals(&base));
     plans.extend(paths(&base));
     plans.extend(beyond_limits(&base));
-    plans.push(side_force(&base));
+    plans.extend(side_forces(&base));
     plans.extend(masses(&base));
+    plans.extend(mass_goals(&base));
     plans.extend(rotor_lags(&base));
     plans.extend(spins(&base));
+    plans.extend(unforeseen(&base));
     plans
 }
 
@@ -138,23 +167,31 @@ fn paths(base: &Configuration) -> Vec<Plan> {
 }
 
 fn beyond_limits(base: &Configuration) -> Vec<Plan> {
-    let eight = |size_m, rate_rad_s| Path { shape: Shape::FigureEight, size_m, rate_rad_s };
-    let circle = Path { shape: Shape::Circle, size_m: 4.0, rate_rad_s: 1.5 };
-    let flight = |what: &str, configuration: &Configuration, path: Path| {
+    let flight = |what: &str, configuration: &Configuration, (shape, size_m, rate_rad_s)| {
+        let path = Path { shape, size_m, rate_rad_s };
         on_path(Row::BeyondLimits, format!("{}, {what}", path_name(&path)), configuration, path)
     };
-    vec![
-        flight("tilt 1.0 rad, speed 20 m/s", &wide(base, 1.0, 20.0), eight(8.0, 1.0)),
-        flight("default limits", base, eight(6.0, 0.85)),
-        flight("default limits", base, circle),
-        flight("speed 3 m/s", &wide(base, 1.2, 3.0), eight(6.0, 0.7)),
-    ]
+    let steep = wide(base, 1.0, 20.0);
+    let pushed = format!("default limits, against {PUSH_N} N");
+    let push = |plan: Plan| Plan { force_n: [-PUSH_N, 0.0, 0.0], ..plan };
+    let mut plans = Vec::new();
+    plans.extend(STEEP_PATHS.map(|path| flight("tilt 1.0 rad, speed 20 m/s", &steep, path)));
+    plans.extend(FAST_PATHS.map(|path| flight("default limits", base, path)));
+    plans.extend(PUSHED_PATHS.map(|path| push(flight(&pushed, base, path))));
+    plans
 }
 
-fn side_force(base: &Configuration) -> Plan {
-    let force_n = SIDE_FORCE_SHARE * base.airframe.weight_n();
-    let hold = plan(Row::SideForce, "east by half of the weight", base, Demand::Goal([0.0; 3]), 30.0);
-    Plan { force_n: [0.0, force_n, 0.0], ..hold }
+fn side_forces(base: &Configuration) -> Vec<Plan> {
+    SIDE_FORCES
+        .into_iter()
+        .map(|(share, tilt_rad)| {
+            let mut configuration = *base;
+            configuration.limits.tilt_rad = tilt_rad;
+            let name = format!("east by {share} of the weight, tilt {tilt_rad} rad");
+            let hold = plan(Row::SideForce, name, &configuration, Demand::Goal([0.0; 3]), 30.0);
+            Plan { force_n: [0.0, share * base.airframe.weight_n(), 0.0], ..hold }
+        })
+        .collect()
 }
 
 fn masses(base: &Configuration) -> Vec<Plan> {
@@ -177,16 +214,30 @@ fn masses(base: &Configuration) -> Vec<Plan> {
     plans
 }
 
+fn mass_goals(base: &Configuration) -> Vec<Plan> {
+    let mut plans = Vec::new();
+    for factor in GOAL_MASS_FACTORS {
+        let mut configuration = *base;
+        configuration.controllers.mass_factor = factor;
+        for (name, goal_m, duration_s) in MASS_GOALS.map(|index| GOALS[index]) {
+            let name = format!("{name}, mass believed {factor} of the true one");
+            plans.push(plan(Row::MassGoal, name, &configuration, Demand::Goal(goal_m), duration_s));
+        }
+    }
+    plans
+}
+
 fn rotor_lags(base: &Configuration) -> Vec<Plan> {
-    ROTOR_LAGS_S
-        .into_iter()
-        .map(|lag_s| {
-            let mut configuration = *base;
-            configuration.airframe.rotor_time_constant_s = lag_s;
-            let name = format!("5 m north, rotor lag {lag_s} s");
-            plan(Row::RotorLag, name, &configuration, Demand::Goal([5.0, 0.0, 0.0]), 40.0)
-        })
-        .collect()
+    let mut plans = Vec::new();
+    for lag_s in ROTOR_LAGS_S {
+        let mut configuration = *base;
+        configuration.airframe.rotor_time_constant_s = lag_s;
+        for (name, goal_m, duration_s) in LAGGED_GOALS.map(|index| GOALS[index]) {
+            let name = format!("{name}, rotor lag {lag_s} s");
+            plans.push(plan(Row::RotorLag, name, &configuration, Demand::Goal(goal_m), duration_s));
+        }
+    }
+    plans
 }
 
 fn spins(base: &Configuration) -> Vec<Plan> {
@@ -206,4 +257,23 @@ fn spins(base: &Configuration) -> Vec<Plan> {
             )
         })
         .collect()
+}
+
+fn unforeseen(base: &Configuration) -> Vec<Plan> {
+    let mut plans = Vec::new();
+    for reach_m in JUMPS_M {
+        let name = format!("goals within {reach_m} m that jump each second");
+        plans.push(plan(Row::Unforeseen, name, base, Demand::Jumps(reach_m), 30.0));
+    }
+    for (shape, size_m, rate_rad_s) in BARE_PATHS {
+        let path = Path { shape, size_m, rate_rad_s };
+        let name = format!("{}, positions at 10 Hz", path_name(&path));
+        let whole = on_path(Row::Unforeseen, name, base, path);
+        plans.push(Plan { demand: Demand::Positions(path), ..whole });
+    }
+    for speed_m_s in REVERSED_M_S {
+        let name = format!("{speed_m_s} m/s, reversed each 5 s");
+        plans.push(plan(Row::Unforeseen, name, base, Demand::ToAndFro(speed_m_s), 30.0));
+    }
+    plans
 }

@@ -12,8 +12,8 @@ use super::track::Track;
 /// One figure of one flight of one controller.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct BarResult {
-    /// Row of the table of bars: "cruise", "goal", "path", "beyond-limits", "side-force", "mass", "rotor-lag", "spin",
-    /// "random" or "sample-time".
+    /// Row of the table of bars: "cruise", "goal", "path", "beyond-limits", "side-force", "mass", "mass-goal", "rotor-lag", "spin",
+    /// "unforeseen", "random" or "sample-time".
     pub row: &'static str,
     /// The flight.
     pub flight: String,

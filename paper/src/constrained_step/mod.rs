@@ -6,7 +6,7 @@
 //!           clarabel_moves ┘                                     └─► trade_off (over N, a, α, placing)
 //! ```
 
-mod axis;
+pub mod axis;
 mod clarabel_moves;
 mod controllers;
 mod cost;

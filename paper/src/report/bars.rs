@@ -16,9 +16,10 @@ pub fn section(page: &mut Page, results: &Results) {
         "Flights of the nonlinear plant with rotor lag and all limits, without the shaper. Each figure has a bar, except those that only \
          inform; ✗ marks a figure that misses its bar. LMPC, SS-MPC and DLQR fly without the governor, “DLQR, governed” \
          with it. “Geometric” is the controller of Lee, Leok and McClamroch (2010) with feed-forward from differential flatness, \
-         sampled at 100 Hz; it knows no limits but the rotors' and flies paths only. Paths begin at rest with a ramp of 5 s, 5 s later \
+         sampled at 100 Hz; the limits of tilt and speed bound its feedback, but not the feed-forward, and it flies motions only. Paths begin at rest with a ramp of 5 s, 5 s later \
          the 20 s begin over which errors count. Figure-eights are x = A sin ωt, y = A/2 sin 2ωt. Settling times may not be longer than \
-         those of either DLQR, unless that breaks a limit by more than 25 %; paths beyond the limits may cost 10 % more than the best of our controllers. Sample times are \
+         those of either DLQR, unless that breaks a limit by more than 25 %; paths beyond the limits and references that nobody can foresee may cost 10 % more than with the best of our controllers, and \
+         beyond the limits no path may be left by more than twice its width. Sample times are \
          those of this machine.",
     );
     summary(page, &results.bars);

@@ -1,10 +1,9 @@
 //! What the position controller keeps within.
 
-use alloc::vec::Vec;
-
 use lmpc::SignalLimit;
 use nalgebra::Vector2;
 
+use crate::design::limited_samples::in_time;
 use crate::{GRAVITY_M_S2, Limits};
 
 /// Sides of the polygons about circles of tilt and speed: their corners lie 0.86 % outside.
@@ -14,8 +13,6 @@ const COARSE_SIDES: usize = 8;
 /// Bounds, one per side.
 pub(crate) const POSITION_BOUNDS: usize = 3 * SIDES + 2 * COARSE_SIDES;
 
-/// Time between the samples that are counted here, s.
-const SAMPLE_TIME_S: f64 = 0.05;
 /// Samples of the tilt command for which the present thrust counts.
 static PRESENT_TILT: &[usize] = &[0, 1, 2];
 /// The later ones: those at which it can be chosen, and some of those at which it settles.
@@ -70,16 +67,6 @@ pub(crate) fn position_limits(sample_time_s: f64) -> [SignalLimit; 5] {
         of_states(3, COARSE_SIDES, LEANING).giving_way_by(GRAVITY_M_S2 * LEANING_RAD_S),
         of_states(1, SIDES, MOVING).giving_way_by(SPEED_M_S),
     ]
-}
-
-/// The same instants in slower samples: between sparse ones a limit is not kept. Faster samples keep their numbers.
-fn in_time(samples: &[usize], sample_time_s: f64) -> Vec<usize> {
-    let share = (SAMPLE_TIME_S / sample_time_s).min(1.0);
-    let slower = |sample: usize| libm::round(sample as f64 * share) as usize;
-    // What is measured now cannot be chosen.
-    let mut slower: Vec<usize> = samples.iter().map(|sample| slower(*sample).max((*sample).min(1))).collect();
-    slower.dedup();
-    slower
 }
 
 /// How the tilt is accelerated whatever is commanded now. A plan that would have to prevent it could only fail, give way at all of its
@@ -179,14 +166,16 @@ mod tests {
     use nalgebra::Vector2;
 
     use super::{
-        Asked, COARSE_SIDES, POSITION_BOUNDS, SAMPLE_TIME_S, SIDES, TurnUnderWay, horizon_m, in_sight,
-        position_bounds, position_limits,
+        Asked, COARSE_SIDES, POSITION_BOUNDS, SIDES, TurnUnderWay, horizon_m, in_sight, position_bounds,
+        position_limits,
     };
+    use crate::design::limited_samples::TRANSLATION_SAMPLE_S;
     use crate::{GRAVITY_M_S2, Limits};
 
     #[test]
     fn each_side_has_its_bound() {
-        let sides: usize = position_limits(SAMPLE_TIME_S).iter().map(|limit| limit.directions.nrows()).sum();
+        let sides: usize =
+            position_limits(TRANSLATION_SAMPLE_S).iter().map(|limit| limit.directions.nrows()).sum();
         assert_eq!(sides, POSITION_BOUNDS);
         let limits = Limits::default();
         let bounds = position_bounds(
@@ -200,16 +189,6 @@ mod tests {
         assert_eq!(bounds[2 * SIDES], GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
         assert_eq!(bounds[2 * SIDES + COARSE_SIDES], GRAVITY_M_S2 * limits.tilt_rate_rad_s);
         assert_eq!(bounds[POSITION_BOUNDS - 1], 8.0);
-    }
-
-    /// The instants of slower samples are those of the usual ones, as far as there are samples; the state of now is not limited.
-    #[test]
-    fn slower_samples_are_limited_at_the_same_instants() {
-        let samples = |sample_time_s: f64| position_limits(sample_time_s).map(|limit| limit.samples);
-        assert_eq!(samples(0.02), samples(SAMPLE_TIME_S));
-        let [present, _, turning, _, moving] = samples(0.2);
-        assert_eq!((&present[..], &turning[..]), (&[0, 1][..], &[1, 2, 3, 5][..]));
-        assert_eq!(moving, [1, 2, 3, 4, 5, 7, 9, 13, 20]);
     }
 
     /// What is under way is not forbidden; what is slower than the limit changes nothing.

@@ -102,7 +102,7 @@ pub(crate) fn altitude_problem(configuration: &Configuration) -> Result<LoopProb
     let lag_s = configuration.airframe.rotor_time_constant_s;
     let model = altitude_model_with_lag(lag_s, settings.sample_time_s())?;
     let bandwidth = [ALTITUDE_RAD_S].into();
-    Ok(LoopProblem::new(settings, &bandwidth, altitude_limits(), SIGHT_M, &model)?
+    Ok(LoopProblem::new(settings, &bandwidth, altitude_limits(settings.sample_time_s()), SIGHT_M, &model)?
         .planned_about(ALTITUDE_STABILIZING_SHARE))
 }
 

@@ -2,6 +2,7 @@
 
 pub mod double_double;
 pub mod explicit_plan;
+pub mod lagged_integrators;
 pub mod quadratic_problem;
 
 use lmpc::{Augmented, Discretization, LaguerreBasis, StateSpace};
