@@ -41,6 +41,11 @@ impl Outbox {
         self.voice
     }
 
+    /// Who was asked, and answers.
+    pub fn asked(&self) -> Speaker {
+        self.asked
+    }
+
     /// From now on somebody answers who was asked.
     pub fn answer_as(&mut self, asked: Speaker) {
         self.asked = asked;

@@ -2,11 +2,11 @@
 
 #![allow(deprecated)] // Clients still use what the dialect calls deprecated.
 
-use crate::common::{Bench, command_long, settings};
+use crate::common::{Bench, command_long, ftp_client, settings};
 use autopilot::codec::{Frame, Message, Version};
-use autopilot::envelope::Destination;
-use mavlink::Message as _;
+use autopilot::envelope::{Destination, Outgoing};
 use mavlink::dialects::ardupilotmega::*;
+use mavlink::{Message as _, MessageData};
 use nalgebra::{Quaternion, UnitQuaternion};
 use vehicle::VehicleSettings;
 use vehicle::equipment::EquipmentVoice;
@@ -140,7 +140,7 @@ fn the_camera_takes_images_one_by_one_and_at_an_interval() {
     let information = asked!(bench, CAMERA_INFORMATION, CAMERA_INFORMATION_DATA);
     assert!(information.flags.contains(CameraCapFlags::CAMERA_CAP_FLAGS_CAPTURE_IMAGE));
     assert!(!information.flags.contains(CameraCapFlags::CAMERA_CAP_FLAGS_HAS_VIDEO_STREAM));
-    assert_eq!(information.cam_definition_uri.to_str().unwrap_or(""), "", "no definition");
+    assert_eq!(information.cam_definition_uri.to_str().unwrap_or(""), "mftp://camera.xml");
     let start = |interval: f32, count: f32| [0.0, interval, count, 1.0, NAN, NAN, NAN];
     assert_eq!(bench.command(MavCmd::MAV_CMD_IMAGE_START_CAPTURE, start(0.0, 1.0)), ACCEPTED);
     bench.fly(0.01);
@@ -180,6 +180,27 @@ fn the_camera_takes_images_one_by_one_and_at_an_interval() {
     assert_eq!(bench.command(MavCmd::MAV_CMD_STORAGE_FORMAT, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]), ACCEPTED);
     assert_eq!(heard!(bench, STORAGE_INFORMATION).used_capacity, 0.0);
     assert_eq!(asked!(bench, CAMERA_CAPTURE_STATUS, CAMERA_CAPTURE_STATUS_DATA).image_count, 0);
+}
+
+/// QGroundControl asks the camera, MAVSDK the autopilot.
+#[test]
+fn the_definition_is_read_from_who_is_asked() {
+    let mut bench = Bench::new(Identity::Px4);
+    for component in [CAMERA, 1] {
+        let name = b"/camera.xml";
+        let request = ftp_client::request(0, ftp_client::OPEN, 0, name.len() as u8, 0, name);
+        let MavMessage::FILE_TRANSFER_PROTOCOL(request) = request else { unreachable!() };
+        let request = FILE_TRANSFER_PROTOCOL_DATA { target_component: component, ..request };
+        let frame = bench.frame(MavMessage::FILE_TRANSFER_PROTOCOL(request));
+        bench.autopilot.receive(&Bench::origin(), &frame);
+        bench.autopilot.transfer(1, |_| Some(true));
+        let outgoing: Vec<_> = bench.autopilot.take_outgoing().collect();
+        let answers = |outgoing: &&Outgoing| outgoing.message.id() == FILE_TRANSFER_PROTOCOL_DATA::ID;
+        let senders: Vec<u8> = outgoing.iter().filter(answers).map(|outgoing| outgoing.component).collect();
+        assert_eq!(senders, [component]);
+        let heard: Vec<_> = outgoing.into_iter().map(|outgoing| outgoing.message).collect();
+        assert!(ftp_client::answers(&heard)[0].result.is_ok(), "it is there");
+    }
 }
 
 #[test]

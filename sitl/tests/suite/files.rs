@@ -21,14 +21,19 @@ fn shared() -> (TempDir, std::path::PathBuf) {
     (place, root)
 }
 
+/// What the root always has, with a camera definition of so many bytes, and what else it has.
+fn made_and(others: &[&str], definition: usize) -> Vec<String> {
+    let made = ["D@MISSION", "D@PARAM", "Dmetadata", "Dplans"].map(str::to_owned);
+    let others = others.iter().map(|name| (*name).to_owned());
+    made.into_iter().chain([format!("Fcamera.xml\t{definition}")]).chain(others).collect()
+}
+
 #[test]
 fn the_root_shows_what_there_is_and_files_read_as_they_are() {
     let (_place, root) = shared();
     let mut client = Client::sharing(&root, false);
-    assert_eq!(
-        client.list("/"),
-        Ok(["D@MISSION", "D@PARAM", "Dmetadata", "Dplans", "Dfiles"].map(str::to_owned).to_vec())
-    );
+    let definition = client.read("/camera.xml").expect("there").len();
+    assert_eq!(client.list("/"), Ok(made_and(&["Dfiles"], definition)));
     assert_eq!(client.list(""), client.list("/"));
     let listed = ["Dbelow", "Fhello.txt\t5"].map(str::to_owned).to_vec();
     assert_eq!(client.list("/files"), Ok(listed.clone()));
@@ -48,10 +53,7 @@ fn the_root_shows_what_there_is_and_files_read_as_they_are() {
     // Without anything shared there is nothing to be found.
     let mut bare = Client::of(Disk::default());
     assert_eq!(bare.list("/files"), Err(NOT_FOUND));
-    assert_eq!(
-        bare.list("/"),
-        Ok(["D@MISSION", "D@PARAM", "Dmetadata", "Dplans"].map(str::to_owned).to_vec())
-    );
+    assert_eq!(bare.list("/"), Ok(made_and(&[], definition)));
 }
 
 /// What is downloaded is what `--mission` reads.
@@ -179,7 +181,15 @@ fn nothing_leads_out_of_the_root() {
 fn what_may_only_be_read_is_protected() {
     let (_place, root) = shared();
     let mut client = Client::sharing(&root, false);
-    for path in ["/files/new", "/files/hello.txt", "/@PARAM/param.pck", "/metadata/general.json", "/", ""] {
+    for path in [
+        "/files/new",
+        "/files/hello.txt",
+        "/@PARAM/param.pck",
+        "/metadata/general.json",
+        "/camera.xml",
+        "/",
+        "",
+    ] {
         for opcode in [CREATE, OPEN_TO_WRITE, REMOVE, MAKE_FOLDER, REMOVE_FOLDER, TRUNCATE] {
             assert_eq!(client.on(opcode, path), Err(PROTECTED), "{opcode} {path}");
         }

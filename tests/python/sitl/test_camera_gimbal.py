@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from mavsdk.plugins.camera import Camera, CameraError, Mode
+from mavsdk.plugins.camera import Camera, CameraError, Mode, Option, Setting
 from mavsdk.plugins.gimbal import ControlMode, Gimbal, GimbalMode, SendMode
 from mavsdk.plugins.gripper import Gripper
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -38,6 +38,33 @@ def test_photos(fly, arguments):
     with pytest.raises(CameraError):
         camera.track_point(found.component_id, 0.5, 0.5, 0.1)
     assert len(images) <= count + 1
+    camera.destroy()
+
+
+@pytest.mark.parametrize("arguments", [(), ("--equipment", "own"), ("--autopilot", "ardupilot")], ids=" ".join)
+def test_settings(fly, tmp_path, monkeypatch, arguments):
+    """The steps of the example camera_params: settings and their ranges come from the camera definition, which MAVSDK downloads."""
+    # Where MAVSDK keeps definitions: none is there.
+    monkeypatch.setenv("HOME", str(tmp_path))
+    camera = Camera(fly(*arguments))
+    eventually("a camera", lambda: camera.camera_list().cameras)
+    component = camera.camera_list().cameras[0].component_id
+
+    def current():
+        try:
+            return {setting.setting_id: float(setting.option.option_id) for setting in camera.get_current_settings(component)}
+        except CameraError:  # The definition is still on its way.
+            return {}
+
+    eventually("the settings", lambda: current() == {"CAM_ZOOM": 0, "CAM_FOCUS": 0})
+    for setting in camera.get_possible_setting_options(component):
+        assert setting.is_range and [float(option.option_id) for option in setting.options] == [0, 100, 1]
+    camera.set_mode(component, Mode.VIDEO)
+    camera.set_setting(component, Setting("CAM_ZOOM", "", Option("40.0", ""), True))
+    eventually("the zoom", lambda: current() == {"CAM_ZOOM": 40, "CAM_FOCUS": 0})
+    with pytest.raises(CameraError):
+        camera.set_setting(component, Setting("CAM_FOCUS", "", Option("101.0", ""), True))
+    assert camera.get_mode(component) == Mode.VIDEO
     camera.destroy()
 
 

@@ -11,6 +11,7 @@ use vehicle::Vehicle;
 use vehicle::equipment::{Camera, CameraMode, FOCAL_LENGTH_MM, Image, SENSOR_MM, STORAGE_MIB};
 use vehicle::world::{Geodetic, heading_deg};
 
+use super::camera_definition;
 use super::gimbal_messages::device_id;
 use crate::codec::{boot_ms, millimetres, scaled_degrees};
 use crate::service::version;
@@ -31,7 +32,7 @@ fn bytes(text: &str) -> [u8; 32] {
     field
 }
 
-/// CAMERA_INFORMATION. There is no definition file, and no video stream.
+/// CAMERA_INFORMATION. There is no video stream.
 pub fn information(component: &Component<'_>) -> MavMessage {
     let [width_mm, height_mm] = SENSOR_MM;
     MavMessage::CAMERA_INFORMATION(CAMERA_INFORMATION_DATA {
@@ -50,8 +51,10 @@ pub fn information(component: &Component<'_>) -> MavMessage {
             | CameraCapFlags::CAMERA_CAP_FLAGS_HAS_BASIC_FOCUS,
         resolution_h: RESOLUTION[0],
         resolution_v: RESOLUTION[1],
-        vendor_name: bytes("LMPC"),
-        model_name: bytes("Simulated camera"),
+        vendor_name: bytes(camera_definition::VENDOR),
+        model_name: bytes(camera_definition::MODEL),
+        cam_definition_version: camera_definition::VERSION,
+        cam_definition_uri: camera_definition::URI.into(),
         gimbal_device_id: device_id(component),
         ..CAMERA_INFORMATION_DATA::default()
     })

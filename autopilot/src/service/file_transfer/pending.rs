@@ -6,6 +6,7 @@ use mavlink::dialects::ardupilotmega::MavMessage;
 
 use super::message::{Client, Reply, Request};
 use crate::envelope::{Origin, PeerId};
+use crate::speaker::Speaker;
 use crate::turns::Turns;
 
 /// Requests of one peer that are worked on at the same time: ten times what clients have.
@@ -18,6 +19,8 @@ const MOST: usize = 256;
 struct Waiting {
     number: u64,
     origin: Origin,
+    /// Who was asked, and answers.
+    asked: Speaker,
     request: Request,
     /// Sequence of the latest reply.
     sequence: u16,
@@ -54,9 +57,9 @@ impl Pending {
     }
 
     /// A request is being worked on.
-    pub fn add(&mut self, number: u64, origin: Origin, request: Request) {
+    pub fn add(&mut self, number: u64, origin: Origin, asked: Speaker, request: Request) {
         let sequence = request.sequence;
-        self.all.push(Waiting { number, origin, request, sequence, replies: None });
+        self.all.push(Waiting { number, origin, asked, request, sequence, replies: None });
     }
 
     /// Takes the replies to a request in.
@@ -71,14 +74,15 @@ impl Pending {
         self.all.retain(|waiting| is_there(waiting.origin.peer));
     }
 
-    /// The next reply and whom it is for.
-    pub fn next(&mut self, is_ready: impl Fn(PeerId) -> bool) -> Option<(PeerId, MavMessage)> {
+    /// The next reply, whom it is for, and who was asked.
+    pub fn next(&mut self, is_ready: impl Fn(PeerId) -> bool) -> Option<(PeerId, Speaker, MavMessage)> {
         let answered = self.all.iter().filter(|waiting| waiting.replies.is_some());
         let peer =
             self.turns.next(answered.map(|waiting| waiting.origin.peer).filter(|peer| is_ready(*peer)))?;
         let place =
             self.all.iter().position(|waiting| waiting.origin.peer == peer && waiting.replies.is_some())?;
         let waiting = self.all.get_mut(place)?;
+        let asked = waiting.asked;
         let reply = waiting.replies.as_mut().and_then(VecDeque::pop_front);
         waiting.sequence = waiting.sequence.wrapping_add(1);
         let message =
@@ -86,7 +90,7 @@ impl Pending {
         if waiting.replies.as_ref().is_none_or(VecDeque::is_empty) {
             self.all.remove(place);
         }
-        Some((peer, message?))
+        Some((peer, asked, message?))
     }
 }
 

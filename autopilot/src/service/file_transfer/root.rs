@@ -3,6 +3,7 @@
 //! ```text
 //! /@MISSION/mission.dat         the mission, packed, to be read and written; fence and rally points beside it
 //! /@PARAM/param.pck             parameters, packed
+//! /camera.xml                   the camera definition: which settings the camera has
 //! /metadata/general.json        what there is to know of this component
 //! /metadata/parameters.json     names, ranges, units of the parameters
 //! /metadata/events.json         events, and the modes and components that they are about
@@ -19,6 +20,7 @@ use super::plan_pack;
 use super::plan_text;
 use crate::context::Context;
 use crate::file_store::{FileStore, LOGS, Listed};
+use crate::service::equipment::camera_definition;
 
 /// Folders of files that are made, and their files.
 const MADE: [(&str, &[&str]); 4] = [
@@ -46,7 +48,7 @@ pub fn plain(path: &str) -> Result<String, Nak> {
 /// Whether a path is one of the made files or folders, or the root.
 fn is_made(path: &str) -> bool {
     let first = path.split('/').next().unwrap_or_default();
-    path.is_empty() || MADE.iter().any(|(folder, _)| *folder == first)
+    path.is_empty() || first == camera_definition::NAME || MADE.iter().any(|(folder, _)| *folder == first)
 }
 
 /// A plain path that may be written.
@@ -68,6 +70,7 @@ pub fn made_file(context: &Context, path: &str) -> Option<Vec<u8>> {
     }
     Some(match name {
         "@PARAM/param.pck" => parameter_pack::pack(context),
+        camera_definition::NAME => camera_definition::render(),
         "metadata/general.json" => context.parameters.metadata().general.clone(),
         "metadata/parameters.json" => context.parameters.metadata().parameters.clone(),
         "metadata/events.json" => context.parameters.metadata().events.clone(),
@@ -92,11 +95,15 @@ pub fn made_folder(context: &Context, path: &str) -> Option<Vec<Vec<u8>>> {
     Some(names.iter().map(entry).collect())
 }
 
-/// The entries of a folder of the store; the root has those of the made folders, too.
+/// The entries of a folder of the store; the root has what is made, too.
 pub fn list(store: &dyn FileStore, path: &str, room: usize) -> Result<Vec<Vec<u8>>, Nak> {
-    let made = if path.is_empty() { &MADE[..] } else { &[] };
-    let made = made.iter().map(|(folder, _)| format!("D{folder}\0").into_bytes());
-    Ok(made.chain(store.list(path)?.iter().map(|listed| entry(listed, room))).collect())
+    let mut made = Vec::new();
+    if path.is_empty() {
+        made.extend(MADE.iter().map(|(folder, _)| format!("D{folder}\0").into_bytes()));
+        let size = camera_definition::render().len();
+        made.push(format!("F{}\t{size}\0", camera_definition::NAME).into_bytes());
+    }
+    Ok(made.into_iter().chain(store.list(path)?.iter().map(|listed| entry(listed, room))).collect())
 }
 
 /// One entry. What does not fit, or would be taken for more than one, is skipped but counted.

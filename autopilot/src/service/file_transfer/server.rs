@@ -16,6 +16,7 @@ use crate::codec::{Frame, id};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin, PeerId};
 use crate::service::Service;
+use crate::speaker::Speaker;
 
 /// Messages in one turn: a client asks for no more than a burst at once, so these may go faster than lists.
 const MESSAGES: usize = 4;
@@ -57,6 +58,11 @@ impl Service for FileServer {
         &[id::FILE_TRANSFER_PROTOCOL]
     }
 
+    /// Ground stations ask the camera for its definition.
+    fn speakers(&self) -> &'static [Speaker] {
+        &[Speaker::Autopilot, Speaker::Camera]
+    }
+
     fn capabilities(&self, _identity: Identity) -> MavProtocolCapability {
         MavProtocolCapability::MAV_PROTOCOL_CAPABILITY_FTP
     }
@@ -81,10 +87,12 @@ impl Service for FileServer {
         }
         self.pending.retain(|peer| has_room(peer).is_some());
         for _ in 0..turns.saturating_mul(MESSAGES) {
-            let Some((peer, message)) = self.pending.next(|peer| has_room(peer) == Some(true)) else {
+            let Some((peer, asked, message)) = self.pending.next(|peer| has_room(peer) == Some(true)) else {
                 return;
             };
+            context.outbox.answer_as(asked);
             context.outbox.send(Destination::Peer(peer), message);
+            context.outbox.answer_as(Speaker::Autopilot);
         }
     }
 }
@@ -108,7 +116,7 @@ impl FileServer {
         };
         let taken = context.files.submit(origin.peer, Box::new(job)).is_ok();
         if taken {
-            self.pending.add(number, *origin, request.clone());
+            self.pending.add(number, *origin, context.outbox.asked(), request.clone());
         }
         taken
     }
