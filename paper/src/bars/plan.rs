@@ -56,16 +56,14 @@ pub enum Demand {
     Goal([f64; 3]),
     /// A trajectory with velocity and acceleration.
     Path(Path),
-    /// The positions of a trajectory alone, set ten times a second.
-    Positions(Path),
+    /// Points of a trajectory with so many of their derivatives, set each so often, s: with none, they are positions alone.
+    Points(Path, usize, f64),
     /// Raw goals that change each second, this far away at most, m; then the origin.
     Jumps(f64),
     /// North and back at a speed, m/s, that is reversed each 5 s.
     ToAndFro(f64),
 }
 
-/// Time between positions that are given alone, s.
-const POSITIONS_S: f64 = 0.1;
 /// How many goals there are before the last one, the origin.
 const JUMPS: usize = 20;
 /// Steps of an evenly spread sequence of points in a cube: the reciprocal powers of the real root of g⁴ = g + 1.
@@ -124,10 +122,19 @@ impl Plan {
         match self.demand {
             Demand::Goal(goal_m) => PositionReference::goal(goal_m, 0.0),
             Demand::Path(path) => path.reference(time_s),
-            Demand::Positions(path) => {
+            Demand::Points(path, derivatives, each_s) => {
                 // A time that rounding put just before an instant is that instant.
-                let set_s = (time_s / POSITIONS_S + 1e-6).floor() * POSITIONS_S;
-                PositionReference::goal(path.derivative(set_s, 0).into(), 0.0)
+                let set_s = (time_s / each_s + 1e-6).floor() * each_s;
+                let given = |order: usize| {
+                    if order <= derivatives { path.derivative(set_s, order) } else { Vector3::zeros() }
+                };
+                PositionReference {
+                    velocity_m_s: given(1),
+                    acceleration_m_s2: given(2),
+                    jerk_m_s3: given(3),
+                    snap_m_s4: given(4),
+                    ..PositionReference::goal(given(0).into(), 0.0)
+                }
             }
             Demand::Jumps(reach_m) => PositionReference::goal(jumping_goal_m(reach_m, time_s as usize), 0.0),
             Demand::ToAndFro(speed_m_s) => to_and_fro(speed_m_s, time_s),
@@ -137,7 +144,7 @@ impl Plan {
     /// Where the vehicle should be at a time, NED, m.
     pub fn place_m(&self, time_s: f64) -> Vector3<f64> {
         match self.demand {
-            Demand::Positions(path) => path.derivative(time_s, 0),
+            Demand::Points(path, ..) => path.derivative(time_s, 0),
             _ => self.reference(time_s).position_m,
         }
     }

@@ -269,7 +269,7 @@ fn unforeseen(base: &Configuration) -> Vec<Plan> {
         let path = Path { shape, size_m, rate_rad_s };
         let name = format!("{}, positions at 10 Hz", path_name(&path));
         let whole = on_path(Row::Unforeseen, name, base, path);
-        plans.push(Plan { demand: Demand::Positions(path), ..whole });
+        plans.push(Plan { demand: Demand::Points(path, 0, 0.1), ..whole });
     }
     for speed_m_s in REVERSED_M_S {
         let name = format!("{speed_m_s} m/s, reversed each 5 s");

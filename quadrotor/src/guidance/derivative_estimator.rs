@@ -1,44 +1,33 @@
-//! First and second derivative of a signal that is known by samples alone.
+//! Derivatives of a signal that is known by samples alone.
 //!
 //! The signal is an input that somebody sets: each millisecond, or every so often, and then it is held. Only changes of the value
 //! count as samples, at the time of the change, so that a staircase is read by the instants at which it was set, whatever its
-//! period. A polynomial of up to fourth degree is fitted to the samples of the last 0.4 s, or to six of them if they are farther
-//! apart, in the basis of its discrete orthogonal polynomials (Forsythe 1957):
-//!
-//! ```text
-//! p₋₁ = 0,  p₀ = 1,  p_{k+1}(x) = (x − α_k) p_k(x) − β_k p_{k−1}(x)
-//! α_k = Σ x p_k²/S_k,  β_k = S_k/S_{k−1},  S_k = Σ p_k²,  c_k = Σ y p_k/S_k
-//! ```
-//!
-//! What the polynomial leaves is the noise σ of the samples, which makes c_k uncertain by σ²/S_k. A coefficient within twice that
-//! is no information: each but c₀ counts as c_k (1 − 4 σ²/(S_k c_k²)), or not at all. So noisy samples have a derivative of low
-//! degree, or none.
+//! period. A polynomial is fitted to the samples of the last 0.4 s, or to seven of them if they are farther apart.
 
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
+
+use crate::guidance::polynomial_fit::PolynomialFit;
+use crate::guidance::signal_noise::SignalNoise;
 
 /// Samples are at least this far apart, µs.
 const SPACING_US: u64 = 40_000;
 /// The samples that count are not older than this, µs, or than so many periods of the signal.
 const WINDOW_US: u64 = 400_000;
-const PERIODS: u64 = 5;
+const PERIODS: u64 = 6;
 /// Room for all of them.
-const CAPACITY: usize = 12;
+pub(crate) const CAPACITY: usize = 12;
 /// Signals that are set less often than this, µs, count as constant between two changes.
 const LONGEST_PERIOD_US: u64 = 300_000;
-/// Largest degree of the polynomial.
-const DEGREE: usize = 4;
 /// A sample off the polynomial by more than this share of the largest recent change, and by so many standard deviations, begins
 /// another motion. Sinusoids of up to 3 rad/s, set every 100 ms, are off by half of that.
 const OFF: f64 = 0.1;
 const DEVIATIONS: f64 = 6.0;
 /// Polynomials below this degree do not tell another motion from a curved one.
 const TELLING: usize = 3;
-/// Variances that a coefficient loses from its square.
-const VARIANCES: f64 = 4.0;
 
 /// Estimates the derivatives of a signal that is set every so often and held in between, from its changes within the last 0.4 s or
-/// six of them.
+/// seven of them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DerivativeEstimator<const AXES: usize> {
     /// Time, µs, and value; the newest last, and only the first `count` are used: none of a constant.
@@ -47,6 +36,7 @@ pub struct DerivativeEstimator<const AXES: usize> {
     /// The present value, and since when, µs.
     held: SVector<f64, AXES>,
     since_us: u64,
+    noise: SignalNoise,
 }
 
 /// Derivatives of a signal at an instant.
@@ -56,12 +46,17 @@ pub struct Derivatives<const AXES: usize> {
     pub first: SVector<f64, AXES>,
     /// Per s².
     pub second: SVector<f64, AXES>,
+    /// Per s³.
+    pub third: SVector<f64, AXES>,
+    /// Per s⁴.
+    pub fourth: SVector<f64, AXES>,
 }
 
 impl<const AXES: usize> Derivatives<AXES> {
     /// Of a constant.
     pub fn zero() -> Self {
-        Self { first: SVector::zeros(), second: SVector::zeros() }
+        let zero = SVector::zeros();
+        Self { first: zero, second: zero, third: zero, fourth: zero }
     }
 }
 
@@ -75,7 +70,13 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
     /// A constant.
     pub fn new() -> Self {
         let zero = SVector::zeros();
-        Self { samples: [(0, zero); CAPACITY], count: 0, held: zero, since_us: 0 }
+        Self {
+            samples: [(0, zero); CAPACITY],
+            count: 0,
+            held: zero,
+            since_us: 0,
+            noise: SignalNoise::default(),
+        }
     }
 
     /// Makes it a constant again.
@@ -100,7 +101,11 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
         (self.held, self.since_us) = (*value, time_us);
         let elapsed_us = time_us.saturating_sub(last_us);
         let jumps = (value - last).norm() > fastest * (elapsed_us.max(SPACING_US) as f64 / 1e6);
-        if jumps || elapsed_us >= SPACING_US && self.is_off(value, time_us) {
+        let fit = if elapsed_us >= SPACING_US { self.fit(time_us) } else { None };
+        if let Some(fit) = &fit {
+            self.noise.observe(fit.left);
+        }
+        if jumps || fit.is_some_and(|fit| self.is_off(value, &fit)) {
             self.begin(value, time_us);
         } else if elapsed_us >= SPACING_US {
             self.push(value, time_us);
@@ -109,10 +114,14 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
 
     /// The derivatives at `time_us`: zero of a signal that is constant or has just begun.
     pub fn at(&self, time_us: u64) -> Derivatives<AXES> {
-        Fit::new(self.used(), time_us).map_or(Derivatives::zero(), |Fit { derivatives, .. }| {
-            let [_, first, second] = derivatives;
-            Derivatives { first, second }
+        self.fit(time_us).map_or(Derivatives::zero(), |fit| {
+            let [_, first, second, third, fourth] = fit.derivatives;
+            Derivatives { first, second, third, fourth }
         })
+    }
+
+    fn fit(&self, time_us: u64) -> Option<PolynomialFit<AXES>> {
+        PolynomialFit::new(self.used(), self.noise.variance(), time_us)
     }
 
     fn used(&self) -> &[(u64, SVector<f64, AXES>)] {
@@ -138,10 +147,10 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
     }
 
     /// Whether a value does not continue the motion so far.
-    fn is_off(&self, value: &SVector<f64, AXES>, time_us: u64) -> bool {
-        let Some(fit) = Fit::new(self.used(), time_us).filter(|fit| fit.degree >= TELLING) else {
+    fn is_off(&self, value: &SVector<f64, AXES>, fit: &PolynomialFit<AXES>) -> bool {
+        if fit.degree < TELLING {
             return false;
-        };
+        }
         let largest = self
             .used()
             .windows(2)
@@ -167,103 +176,9 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
     }
 }
 
-/// A least-squares polynomial, seen at one instant.
-struct Fit<const AXES: usize> {
-    degree: usize,
-    /// Its value and first and second derivative.
-    derivatives: [SVector<f64, AXES>; 3],
-    /// Standard deviation of a new sample from its value.
-    deviation: f64,
-}
-
-/// One polynomial p_k of the basis in a fit.
-#[derive(Clone, Copy)]
-struct Term<const AXES: usize> {
-    /// c_k
-    coefficient: SVector<f64, AXES>,
-    /// S_k
-    size: f64,
-    /// p_k and its first and second derivative at the instant.
-    there: [f64; 3],
-}
-
-impl<const AXES: usize> Fit<AXES> {
-    /// `None` with fewer than three samples: there must be one more than the polynomial has coefficients.
-    fn new(samples: &[(u64, SVector<f64, AXES>)], time_us: u64) -> Option<Self> {
-        let ([(first_us, _), .., (last_us, _)], 3..) = (samples, samples.len()) else { return None };
-        let degree = DEGREE.min(samples.len() - 2);
-        let half_s = last_us.saturating_sub(*first_us) as f64 / 2e6;
-        // −1 at the first sample, 1 at the last
-        let abscissa = |at_us: u64| at_us.saturating_sub(*first_us) as f64 / 1e6 / half_s - 1.0;
-        let (terms, left) = Self::terms(samples, degree, abscissa, abscissa(time_us));
-        let terms = terms.get(..=degree).unwrap_or(&terms);
-
-        let variance = left / (samples.len() - 1 - degree) as f64;
-        let (mut derivatives, mut gain) = ([SVector::zeros(); 3], 1.0);
-        for (k, Term { coefficient, size, there }) in terms.iter().enumerate() {
-            let square = coefficient.norm_squared();
-            let noise = if k == 0 { 0.0 } else { VARIANCES * variance / size };
-            if square <= noise {
-                continue;
-            }
-            let certain = coefficient * (1.0 - noise / square);
-            for (derivative, p) in derivatives.iter_mut().zip(there) {
-                *derivative += certain * *p;
-            }
-            gain += there[0] * there[0] / size;
-        }
-        derivatives[1] /= half_s;
-        derivatives[2] /= half_s * half_s;
-        Some(Self { degree, derivatives, deviation: libm::sqrt(variance * gain) })
-    }
-
-    /// The terms up to a degree, and the sum of squares that they leave.
-    fn terms(
-        samples: &[(u64, SVector<f64, AXES>)],
-        degree: usize,
-        abscissa: impl Fn(u64) -> f64,
-        at: f64,
-    ) -> ([Term<AXES>; DEGREE + 1], f64) {
-        let mut rest: [SVector<f64, AXES>; CAPACITY] = [SVector::zeros(); CAPACITY];
-        for (rest, (_, value)) in rest.iter_mut().zip(samples) {
-            *rest = *value;
-        }
-        // p_{k−1} and p_k at the samples, and with their derivatives at the instant.
-        let (mut before, mut now) = ([0.0; CAPACITY], [1.0; CAPACITY]);
-        let (mut before_there, mut there) = ([0.0; 3], [1.0, 0.0, 0.0]);
-        let mut size_before = 1.0;
-        let mut terms = [Term { coefficient: SVector::zeros(), size: 1.0, there }; DEGREE + 1];
-        for term in terms.iter_mut().take(degree + 1) {
-            let (mut size, mut moment, mut coefficient) = (0.0, 0.0, SVector::zeros());
-            for ((p, rest), (at_us, _)) in now.iter().zip(&rest).zip(samples) {
-                size += p * p;
-                moment += abscissa(*at_us) * p * p;
-                coefficient += rest * *p;
-            }
-            coefficient /= size;
-            *term = Term { coefficient, size, there };
-            let (alpha, beta) = (moment / size, size / size_before);
-            for (((p, before), rest), (at_us, _)) in
-                now.iter_mut().zip(&mut before).zip(&mut rest).zip(samples)
-            {
-                *rest -= coefficient * *p;
-                (*p, *before) = ((abscissa(*at_us) - alpha) * *p - beta * *before, *p);
-            }
-            let ([p, slope, curvature], [p_1, slope_1, curvature_1]) = (there, before_there);
-            before_there = there;
-            there = [
-                (at - alpha) * p - beta * p_1,
-                p + (at - alpha) * slope - beta * slope_1,
-                2.0 * slope + (at - alpha) * curvature - beta * curvature_1,
-            ];
-            size_before = size;
-        }
-        (terms, rest.iter().take(samples.len()).map(SVector::norm_squared).sum())
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use alloc::vec::Vec;
     use core::f64::consts::FRAC_PI_2;
 
     use nalgebra::Vector3;
@@ -375,6 +290,22 @@ mod tests {
             count += 1.0;
         }
         squares.map(|square: f64| (square / count).sqrt())
+    }
+
+    /// Ten samples a second leave one for the noise in a window: it is known from the windows before.
+    #[test]
+    fn noise_on_few_samples_is_known_from_those_before() {
+        for period_us in [50_000, 100_000] {
+            let between_two = 0.01 * 6.0_f64.sqrt() / (1e-6 * period_us as f64);
+            let signal = |t: f64| {
+                let noise = |axis: u64| noise((t * 1e6).round() as u64 * 3 + axis);
+                Vector3::new(noise(0), noise(1), noise(2)) * 0.01
+            };
+            let late = estimates(signal, period_us).filter(|(t, _)| *t > 4.0);
+            let squares: Vec<f64> = late.map(|(_, found)| found.first.norm_squared()).collect();
+            let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+            assert!(rms < 0.2 * between_two, "each {period_us} µs: {rms}, {between_two}");
+        }
     }
 
     /// Noise on a constant is hardly taken for motion. On a motion it costs no more of the jerk than in the difference of two

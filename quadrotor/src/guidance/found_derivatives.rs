@@ -16,7 +16,7 @@ const JERK_JUMP: f64 = 10.0;
 const SPEED_JUMP: f64 = 3.0;
 
 /// What is known of the derivatives of points of which only positions are given, or positions and velocities, or no jerk and snap:
-/// two derivatives above the highest one that is given, from its samples. What is zero is not given. A constant has no derivatives, so
+/// the derivatives above the highest one that is given, from its samples. What is zero is not given. A constant has no derivatives, so
 /// that set-points and straight lines stay what they are.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct FoundDerivatives {
@@ -79,10 +79,13 @@ impl FoundDerivatives {
         if is_given(&point.velocity_m_s) || is_given(&found.first) {
             whole.acceleration_m_s2 = at_most(&found.first, most_m_s2);
             whole.jerk_m_s3 += at_most(&found.second, most_m_s3);
+            whole.snap_m_s4 += at_most(&found.third, most_m_s4);
         } else {
             let found = self.positions.at(since_us);
             whole.velocity_m_s = found.first;
             whole.acceleration_m_s2 = at_most(&found.second, most_m_s2);
+            whole.jerk_m_s3 = at_most(&found.third, most_m_s3);
+            whole.snap_m_s4 = at_most(&found.fourth, most_m_s4);
         }
         whole
     }
@@ -154,6 +157,41 @@ mod tests {
                         "{given} each {period_us} µs: {t} {off:?}"
                     );
                 }
+            }
+        }
+    }
+
+    /// Positions alone tell all derivatives of a smooth motion, also few of them. Bars are parts of the size of each.
+    #[test]
+    fn positions_tell_all_derivatives_of_a_smooth_motion() {
+        for (period_us, bars) in
+            [(20_000, [0.01; 4]), (50_000, [0.01; 4]), (100_000, [0.001, 0.003, 0.02, 0.2])]
+        {
+            for (t, _, found) in completed(|t| circle(t, 0), period_us).filter(|(t, ..)| *t > 1.0) {
+                let whole = circle(t, 4);
+                let off = [
+                    (found.velocity_m_s - whole.velocity_m_s).norm() / 2.5,
+                    (found.acceleration_m_s2 - whole.acceleration_m_s2).norm() / 1.25,
+                    (found.jerk_m_s3 - whole.jerk_m_s3).norm() / 0.625,
+                    (found.snap_m_s4 - whole.snap_m_s4).norm() / 0.3125,
+                ];
+                let within = off.iter().zip(bars).all(|(off, bar)| *off < bar);
+                assert!(within, "each {period_us} µs: {t} {off:?}");
+            }
+        }
+    }
+
+    /// Behind a corner, jerk and snap are not made up: a speed of 2 m/s that begins to fall by 2 m/s².
+    #[test]
+    fn a_corner_has_no_jerk() {
+        let braked = |t: f64| {
+            let braking_s = (t - 3.0).clamp(0.0, 1.0);
+            PositionReference::goal([2.0 * t.min(4.0) - braking_s * braking_s, 0.0, 0.0], 0.0)
+        };
+        for period_us in [20_000, 50_000, 100_000] {
+            for (t, _, found) in completed(braked, period_us) {
+                let made_up = found.jerk_m_s3.norm() + found.snap_m_s4.norm();
+                assert!(made_up < 1e-3, "each {period_us} µs: {t} {found:?}");
             }
         }
     }

@@ -15,12 +15,14 @@ pub(crate) mod known_motion;
 pub(crate) mod motion_profile;
 #[cfg(feature = "shaper")]
 pub(crate) mod past_motion;
+pub(crate) mod polynomial_fit;
 pub(crate) mod position_reference;
 pub(crate) mod reference_guidance;
 pub(crate) mod reference_motion;
 pub(crate) mod reference_plan;
 #[cfg(feature = "shaper")]
 pub(crate) mod shaper;
+pub(crate) mod signal_noise;
 #[cfg(feature = "shaper")]
 pub(crate) mod smoothing;
 #[cfg(feature = "shaper")]
