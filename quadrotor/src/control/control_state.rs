@@ -394,8 +394,9 @@ impl ControlState {
         let ahead = |guidance: &Guidance, then_us: u64| match (&followed, &foretold) {
             (None, _) => guidance.preview(then_us),
             (_, Some(way)) => guidance.heading(then_us).on(&way.at(&now, then_us)),
+            // Its turns are those of the limits: nobody knows for how long they last.
             (Some(followed), None) => {
-                guidance.heading(then_us).on(&followed.foreseen_after(later_s(then_us)))
+                guidance.heading(then_us).on(&followed.expected_after(later_s(then_us)))
             }
         };
         if due.position {
