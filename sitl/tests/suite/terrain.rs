@@ -76,7 +76,7 @@ fn a_vehicle_lands_on_a_plateau_and_takes_off_from_it() {
 fn heights_above_the_ground_are_told() {
     let mut bench = Bench::hovering_with(&settings(Identity::ArduPilot, PLATEAU));
     let place_m = Vector3::new(40.0, 3.0, 0.0);
-    fly_to(&mut bench, MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, &place_m, 18.0);
+    fly_to(&mut bench, MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT, &place_m, 18.0);
     let origin_m = bench.autopilot.vehicle().frame().origin().altitude_m;
     let report = |message: &MavMessage| match message {
         MavMessage::TERRAIN_REPORT(report) => Some(report.clone()),
@@ -113,13 +113,13 @@ fn heights_above_the_ground_are_told() {
 fn targets_above_the_terrain_are_above_the_ground_there() {
     let mut bench = Bench::hovering_with(&settings(Identity::ArduPilot, PLATEAU));
     let place_m = Vector3::new(40.0, 3.0, 0.0);
-    fly_to(&mut bench, MavFrame::MAV_FRAME_GLOBAL_TERRAIN_ALT_INT, &place_m, 7.0);
+    fly_to(&mut bench, MavFrame::MAV_FRAME_GLOBAL_TERRAIN_ALT, &place_m, 7.0);
     assert!((bench.position()[2] + PLATEAU_M + 7.0).abs() < 0.1, "{:?}", bench.position());
     let place = bench.autopilot.vehicle().frame().to_geodetic(&Vector3::new(45.0, -2.0, 0.0));
     bench.send(MavMessage::COMMAND_INT(COMMAND_INT_DATA {
         target_system: 1,
         target_component: 1,
-        frame: MavFrame::MAV_FRAME_GLOBAL_TERRAIN_ALT_INT,
+        frame: MavFrame::MAV_FRAME_GLOBAL_TERRAIN_ALT,
         command: MavCmd::MAV_CMD_DO_REPOSITION,
         param1: -1.0,
         x: (place.latitude_deg * 1e7).round() as i32,
