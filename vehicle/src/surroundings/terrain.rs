@@ -66,11 +66,13 @@ impl Terrain {
     }
 
     /// Whether it is flat.
+    #[inline]
     pub fn is_flat(&self) -> bool {
         self.relief.is_none()
     }
 
     /// z of the ground, NED, m, at a place north and east of the origin, m.
+    #[inline]
     pub fn z_m(&self, [north_m, east_m]: [f64; 2]) -> f64 {
         match &self.relief {
             Some(relief) => -relief.height_m([north_m, east_m]),
@@ -79,6 +81,7 @@ impl Terrain {
     }
 
     /// z of the ground below or above a place, NED, m.
+    #[inline]
     pub fn z_below_m(&self, place_m: &Vector3<f64>) -> f64 {
         self.z_m([place_m.x, place_m.y])
     }
@@ -115,6 +118,7 @@ impl Terrain {
 
 impl Relief {
     /// Height, m, at a place north and east of the origin, m.
+    #[inline(never)]
     fn height_m(&self, place_m: [f64; 2]) -> f64 {
         let measured_m = self.grid.as_ref().map_or(0.0, |grid| grid.height_m(place_m));
         self.hills.iter().fold(measured_m, |height_m, hill| height_m + hill.height_m(place_m))
