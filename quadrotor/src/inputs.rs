@@ -32,9 +32,11 @@ pub struct Inputs {
     pub estimate: Option<RigidBody>,
     /// What is wrong with each rotor, in the order of the airframe's layout. Disarmed, all of them come to rest.
     pub rotor_faults: [Option<RotorFault>; 4],
+    /// z of the ground below the vehicle, NED, m: see [`PlantInputs::ground_z_m`](crate::PlantInputs::ground_z_m).
+    pub ground_z_m: f64,
 }
 
-/// The paper's flight: armed, to 5 m north, 5 m east, 10 m up, no disturbance, sound rotors.
+/// The paper's flight: armed, to 5 m north, 5 m east, 10 m up, no disturbance, sound rotors, flat ground.
 impl Default for Inputs {
     fn default() -> Self {
         Self {
@@ -47,6 +49,7 @@ impl Default for Inputs {
             lost_rotor: None,
             estimate: None,
             rotor_faults: [None; 4],
+            ground_z_m: 0.0,
         }
     }
 }
@@ -90,6 +93,7 @@ impl Inputs {
             plan: None,
             armed: self.armed,
             shaping: self.shaping,
+            ground_z_m: self.ground_z_m,
         };
         // A plan is large, and mostly there is none to be copied.
         if self.plan.is_some() {
@@ -111,6 +115,8 @@ impl Inputs {
             Some("estimate")
         } else if !self.rotor_faults.iter().flatten().all(|fault| fault.is_valid()) {
             Some("rotor_faults")
+        } else if !self.ground_z_m.is_finite() {
+            Some("ground_z")
         } else {
             None
         };

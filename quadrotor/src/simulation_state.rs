@@ -28,6 +28,8 @@ pub(crate) struct World {
     pub(crate) plant: PlantState,
     disturbance: Disturbance,
     rotor_faults: [Option<RotorFault>; 4],
+    /// z of the ground below, NED, m.
+    ground_z_m: f64,
     /// What the controllers take the vehicle's motion for, if somebody outside estimates it.
     pub(crate) estimate: Option<RigidBody>,
     pub(crate) noise: NoiseState,
@@ -48,6 +50,7 @@ impl World {
             plant,
             disturbance: inputs.disturbance,
             rotor_faults: inputs.rotor_faults,
+            ground_z_m: inputs.ground_z_m,
             estimate: inputs.estimate,
             noise: NoiseState::default(),
         }
@@ -57,6 +60,7 @@ impl World {
     pub(crate) fn take(&mut self, inputs: &Inputs) {
         self.disturbance = inputs.disturbance;
         self.rotor_faults = inputs.rotor_faults;
+        self.ground_z_m = inputs.ground_z_m;
         self.estimate = inputs.estimate;
     }
 
@@ -70,6 +74,7 @@ impl World {
         PlantInputs {
             disturbance: self.disturbance,
             rotor_faults: if armed { self.rotor_faults } else { [None; 4] },
+            ground_z_m: self.ground_z_m,
             ..PlantInputs::rotor_speeds(command_rad_s)
         }
     }
@@ -89,6 +94,9 @@ impl SimulationState {
         }
         if sample_us < event_us || sample_us > point_us {
             return wrong("its controllers do not sample when they would");
+        }
+        if !self.world.ground_z_m.is_finite() {
+            return wrong("its ground is not at a finite height");
         }
         if self.world.plant.has_diverged() {
             return wrong("its plant is not finite, or beyond what a vehicle can reach");

@@ -10,7 +10,12 @@ use vehicle::world::{FARTHEST_M, Geodetic, LocalFrame};
 
 fn site() -> Site {
     let origin = Geodetic { latitude_deg: 47.0, longitude_deg: 8.0, altitude_m: 400.0 };
-    Site { identity: Identity::Px4, frame: LocalFrame::new(origin), home_m: Vector3::new(1.0, 2.0, -3.0) }
+    Site {
+        identity: Identity::Px4,
+        frame: LocalFrame::new(origin),
+        home_m: Vector3::new(1.0, 2.0, -3.0),
+        terrain: vehicle::surroundings::Terrain::default(),
+    }
 }
 
 fn item(command: u16, parameter: f64, position: [f64; 3]) -> MissionItem {

@@ -224,7 +224,7 @@ fn take_off(context: &mut Context, command: &Command) -> Result<(), Refusal> {
         }
         return vehicle.take_off(Some(command.z)).map_err(failed);
     }
-    let down_m = vehicle.site().down_m(global_frame(command)?, command.z);
+    let down_m = vehicle.site().down_m(global_frame(command)?, command.z, vehicle.horizontal_m());
     let height_m = vehicle.home().position_m.z - down_m;
     // PX4 takes an altitude below the ground for one above home of its parameter.
     const LEAST_M: f64 = 0.5;
@@ -254,7 +254,7 @@ fn set_home(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     if !command.z.is_finite() {
         return Err(Refusal::denied("DO_SET_HOME requires an altitude"));
     }
-    position_m.z = vehicle.site().down_m(frame, command.z);
+    position_m.z = vehicle.site().down_m(frame, command.z, [position_m.x, position_m.y]);
     let yaw_rad = Some(command.parameter(4).to_radians()).filter(|yaw| yaw.is_finite());
     vehicle.set_home(position_m, yaw_rad)
 }
@@ -271,9 +271,10 @@ fn reposition(context: &mut Context, command: &Command) -> Result<(), Refusal> {
         let position_m = told_place(command, vehicle)?;
         Some([position_m.x, position_m.y])
     };
+    let place_m = horizontal_m.unwrap_or(vehicle.horizontal_m());
     let down_m = Some(command.z)
         .filter(|altitude| altitude.is_finite())
-        .map(|altitude| vehicle.site().down_m(frame, altitude));
+        .map(|altitude| vehicle.site().down_m(frame, altitude, place_m));
     // As in ArduPilot's guided mode, the nose then points where the vehicle flies.
     let turns = !vehicle.identity().is_ardupilot();
     let yaw_rad = Some(command.parameter(4)).filter(|yaw| turns && yaw.is_finite());

@@ -163,6 +163,6 @@ fn place_m(
         return None;
     }
     let mut place_m = vehicle.frame().to_local_m(&place);
-    place_m.z = vehicle.site().down_m(frame, altitude_m);
+    place_m.z = vehicle.site().down_m(frame, altitude_m, [place_m.x, place_m.y]);
     Some(place_m)
 }

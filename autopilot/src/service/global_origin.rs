@@ -51,8 +51,8 @@ impl Service for GlobalOrigin {
 
     fn command(&mut self, context: &mut Context, _origin: &Origin, command: &Command) -> Outcome {
         let frame = global_frame(command)?;
-        let altitude_m =
-            context.vehicle.frame().origin().altitude_m - context.vehicle.site().down_m(frame, command.z);
+        let altitude_m = context.vehicle.frame().origin().altitude_m
+            - context.vehicle.site().down_m(frame, command.z, context.vehicle.horizontal_m());
         move_origin(context, Geodetic { latitude_deg: command.x, longitude_deg: command.y, altitude_m })?;
         Ok(Progress::Done)
     }

@@ -79,7 +79,9 @@ fn request(command: &Command, vehicle: &Vehicle) -> Result<OrbitRequest, Refusal
     let centre_m = if nowhere { None } else { Some(told_place(command, vehicle)?) };
     Ok(OrbitRequest {
         centre_m: centre_m.map(|place_m| [place_m.x, place_m.y]),
-        down_m: Some(command.z).filter(|z| z.is_finite()).map(|z| vehicle.site().down_m(frame::GLOBAL, z)),
+        down_m: Some(command.z)
+            .filter(|z| z.is_finite())
+            .map(|z| vehicle.site().down_m(frame::GLOBAL, z, [0.0; 2])),
         radius_m: given(1),
         speed_m_s: given(2),
         heading,

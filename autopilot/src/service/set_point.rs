@@ -230,7 +230,7 @@ fn global_position(target: &SetPositionTarget, vehicle: &Vehicle) -> Result<Vect
     if vehicle.identity().is_ardupilot() {
         shorten(&mut position_m, &place, vehicle);
     }
-    position_m.z = vehicle.site().down_m(target.frame, altitude_m);
+    position_m.z = vehicle.site().down_m(target.frame, altitude_m, [position_m.x, position_m.y]);
     Ok(position_m)
 }
 

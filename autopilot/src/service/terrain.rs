@@ -1,4 +1,4 @@
-//! Terrain, as ArduPilot tells it: the ground is flat and known everywhere, so that no data has to be asked for.
+//! Terrain, as ArduPilot tells it: the ground of the simulation is known everywhere, so that no data has to be asked for.
 
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{
@@ -6,6 +6,7 @@ use mavlink::dialects::ardupilotmega::{
 };
 use vehicle::Vehicle;
 use vehicle::identity::Identity;
+use vehicle::world::Geodetic;
 
 use super::Service;
 use crate::codec::{Frame, scaled_degrees};
@@ -25,7 +26,7 @@ pub struct Terrain;
 
 impl Service for Terrain {
     fn summary(&self) -> &'static str {
-        "Height of the flat ground; received terrain data is ignored"
+        "Height of the ground of the world; received terrain data is ignored"
     }
 
     fn messages(&self) -> &'static [u32] {
@@ -55,11 +56,15 @@ fn report(vehicle: &Vehicle) -> MavMessage {
 
 /// The same of a place, degrees · 1e7.
 fn report_of(vehicle: &Vehicle, [lat, lon]: [i32; 2]) -> MavMessage {
+    let altitude_m = vehicle.frame().origin().altitude_m;
+    let [latitude_deg, longitude_deg] = [lat, lon].map(|scaled| f64::from(scaled) / 1e7);
+    let there_m = vehicle.frame().to_local_m(&Geodetic { latitude_deg, longitude_deg, altitude_m });
+    let here_m = vehicle.outputs().position_m;
     MavMessage::TERRAIN_REPORT(TERRAIN_REPORT_DATA {
         lat,
         lon,
-        terrain_height: vehicle.frame().origin().altitude_m as f32,
-        current_height: -vehicle.outputs().position_m.z as f32,
+        terrain_height: (altitude_m - vehicle.terrain().z_below_m(&there_m)) as f32,
+        current_height: (vehicle.terrain().z_below_m(&here_m) - here_m.z) as f32,
         spacing: SPACING_M,
         pending: 0,
         loaded: 1,

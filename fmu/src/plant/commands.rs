@@ -51,6 +51,7 @@ impl Commands {
             },
             disturbance: self.disturbance,
             rotor_faults: self.failed.map(|failed| failed.then_some(RotorFault::Off)),
+            ground_z_m: 0.0,
         }
     }
 }

@@ -46,6 +46,8 @@ pub struct ControlInputs {
     /// Switches the shaper on or off; the reference goes on from where it is and as it moves. `None` leaves it as it is: at
     /// the start, as configured.
     pub shaping: Option<bool>,
+    /// z of the ground below the vehicle, NED, m: nothing is learned of a flight close to it.
+    pub ground_z_m: f64,
 }
 
 /// Inputs as a function of time; any `Fn(u64) -> ControlInputs` of microseconds, or constant [`ControlInputs`].
@@ -96,7 +98,7 @@ impl Target {
 impl ControlInputs {
     /// Armed, with what is asked for, and the shaper as it is.
     pub fn armed(target: Target) -> Self {
-        Self { target, plan: None, armed: true, shaping: None }
+        Self { target, plan: None, armed: true, shaping: None, ground_z_m: 0.0 }
     }
 
     /// Refuses what no law can fly.
@@ -106,6 +108,9 @@ impl ControlInputs {
         }
         if self.plan.as_ref().is_some_and(|plan| !plan.is_finite()) {
             return Err(ControlError::InputNotFinite { name: "reference.plan", time_us });
+        }
+        if !self.ground_z_m.is_finite() {
+            return Err(ControlError::InputNotFinite { name: "ground_z", time_us });
         }
         if self.shaping == Some(true) && !cfg!(feature = "shaper") {
             return Err(ControlError::NoShaper);

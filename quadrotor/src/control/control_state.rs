@@ -306,7 +306,7 @@ impl ControlState {
         (due, time_us): (Due, u64),
     ) -> Result<(), ControlError> {
         if due.attitude {
-            self.learn(&design.configuration, &measurement.motion, time_us);
+            self.learn(&design.configuration, &measurement.motion, inputs.ground_z_m, time_us);
         }
         let configuration = &self.learned.in_place_of_belief(&design.configuration);
         let seen = Observation::new(configuration, &self.estimator, &measurement.motion, time_us);
@@ -344,7 +344,8 @@ impl ControlState {
     }
 
     /// Learns mass and drag from the motion until now, and goes on with them.
-    fn learn(&mut self, configuration: &Configuration, measured: &RigidBody, time_us: u64) {
+    fn learn(&mut self, configuration: &Configuration, measured: &RigidBody, ground_z_m: f64, time_us: u64) {
+        let height_m = ground_z_m - measured.position_m.z;
         if self.law == ControlLaw::RotorLoss {
             self.learned.interrupt();
             return;
@@ -357,7 +358,7 @@ impl ControlState {
             } else {
                 MeasuredMotion::Velocity(measured.velocity_m_s)
             },
-            height_m: configuration.environment.ground_plane.then_some(-measured.position_m.z),
+            height_m: configuration.environment.ground_plane.then_some(height_m),
             velocity_m_s: seen.velocity_m_s,
             attitude: seen.rotation(),
             rotor_speed_rad_s: &self.estimator.rotor_speed_rad_s(),

@@ -72,7 +72,7 @@ impl Plant {
         self.likeness
     }
 
-    /// Whether there is ground at z = 0.
+    /// Whether there is ground.
     pub(crate) fn has_ground(&self) -> bool {
         self.ground_plane
     }
@@ -104,7 +104,7 @@ impl Plant {
     ) -> Forces<T> {
         let mut forces = self.loads(state, inputs, branches);
         if self.ground_plane {
-            let ground = contact(&self.airframe, &state.body, self.reach_m, branches);
+            let ground = contact(&self.airframe, &state.body, inputs.ground_z_m, self.reach_m, branches);
             forces.external.force_n += ground.force_n;
             forces.external.torque_n_m += ground.torque_n_m;
         }
@@ -129,7 +129,8 @@ impl Plant {
         };
         let (rotor_acceleration_rad_s2, discharge_per_s) =
             self.drive(state, command_rad_s, &inputs.rotor_faults, branches);
-        let around = Surroundings { wind_m_s: disturbance.wind_m_s, ground_plane: self.ground_plane };
+        let ground_z_m = self.ground_plane.then_some(inputs.ground_z_m);
+        let around = Surroundings { wind_m_s: disturbance.wind_m_s, ground_z_m };
         let RotorForces { wrench, lateral_n } = RotorForces::new(airframe, state, &around, branches);
         if airframe.rotor_aerodynamics.drags() {
             external.force_n += state.body.orientation().in_world(&lateral_n);
@@ -187,7 +188,7 @@ impl Plant {
 
     /// Whether static friction holds the vehicle where it is.
     pub(crate) fn is_held<T: Valued>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> bool {
-        if !self.ground_plane || cannot_be_held(&state.body, self.reach_m) {
+        if !self.ground_plane || cannot_be_held(&state.body, inputs.ground_z_m.value(), self.reach_m) {
             return false;
         }
         let (state, inputs) = (state.zip_map(state, |x, _| x.value()), inputs.values());
@@ -203,7 +204,7 @@ impl Plant {
         let thrust_n = Vector3::new(0.0, 0.0, -wrench.thrust_n);
         pull.force_n += still.body.orientation().in_world(&thrust_n);
         pull.torque_n_m += wrench.torque_n_m;
-        HoldingMargins::new(&self.airframe, &state.body, &pull)
+        HoldingMargins::new(&self.airframe, &state.body, inputs.ground_z_m, &pull)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Contact with a ground plane at z = 0.
+//! Contact with a ground that is level below the vehicle: at z = 0 unless the inputs say otherwise.
 
 use nalgebra::Vector3;
 
@@ -24,25 +24,26 @@ const FRICTION_SLIP_M_S: f64 = 0.1;
 const DEEPEST_START_M: f64 = 0.01;
 
 /// Force, NED, N, and torque, FRD, N·m, of the ground on the four feet. There is one below, or above, each rotor, level with
-/// the centre of mass, so that a vehicle at rest on the ground is at z = 0 but for the compliance.
+/// the centre of mass, so that a vehicle at rest on the ground is at its height, `ground_z_m`, but for the compliance.
 ///
 /// The friction is that of feet that slip: proportional to a slow slip, and zero at rest. [`HoldingMargins`] decide when
 /// static friction holds the vehicle instead. `reach_m` is [`reach_m`] of the airframe.
 pub(crate) fn contact<T: Real>(
     airframe: &Airframe,
     body: &RigidBody<T>,
+    ground_z_m: T,
     reach_m: f64,
     branches: &mut impl Branches<T>,
 ) -> External<T> {
     let mut total = External::default();
     // No foot can touch the ground in any attitude.
-    if branches.may_skip(body.position_m.z, -reach_m) {
+    if branches.may_skip(body.position_m.z - ground_z_m, -reach_m) {
         return total;
     }
     let orientation = body.orientation();
     for (index, foot) in feet(airframe).into_iter().enumerate() {
         let foot = constant(foot);
-        let depth = depth_m(body, &orientation, &foot);
+        let depth = depth_m(body, ground_z_m, &orientation, &foot);
         if branches.may_skip(depth, 0.0) {
             continue;
         }
@@ -74,10 +75,11 @@ pub(crate) struct HoldingMargins {
 impl HoldingMargins {
     /// Of a body under a `pull`, which is all force and torque but the ground's and gravity: all feet must carry load, it must
     /// slip more slowly than sliding friction needs to develop, and the feet together must be able to take the pull.
-    pub(crate) fn new(airframe: &Airframe, body: &RigidBody, pull: &External) -> Self {
+    pub(crate) fn new(airframe: &Airframe, body: &RigidBody, ground_z_m: f64, pull: &External) -> Self {
         let orientation = body.orientation();
         let footings = feet(airframe).map(|foot| {
-            Footing::new(airframe, body, &orientation, &foot, depth_m(body, &orientation, &foot))
+            let depth = depth_m(body, ground_z_m, &orientation, &foot);
+            Footing::new(airframe, body, &orientation, &foot, depth)
         });
         let load_n: f64 = footings
             .iter()
@@ -110,8 +112,8 @@ impl HoldingMargins {
 }
 
 /// Whether the vehicle is so high, or so fast along the ground, that static friction cannot hold it under any pull.
-pub(crate) fn cannot_be_held<T: Valued>(body: &RigidBody<T>, reach_m: f64) -> bool {
-    is_above(body, reach_m) || slip_m_s(body, reach_m) >= FRICTION_SLIP_M_S
+pub(crate) fn cannot_be_held<T: Valued>(body: &RigidBody<T>, ground_z_m: f64, reach_m: f64) -> bool {
+    is_above(body, ground_z_m, reach_m) || slip_m_s(body, reach_m) >= FRICTION_SLIP_M_S
 }
 
 /// How fast the outermost foot may slip along the ground, m/s.
@@ -120,7 +122,7 @@ fn slip_m_s<T: Valued>(body: &RigidBody<T>, reach_m: f64) -> f64 {
     velocity_m_s.xy().norm() + libm::fabs(body.body_rate_rad_s.z.value()) * reach_m
 }
 
-/// The greatest z, NED, m, from which a flight can start above the ground with this initial attitude: there the lowest foot
+/// The greatest z, NED, m, from which a flight can start above ground at z = 0 with this initial attitude: there the lowest foot
 /// touches the ground. In whole millimetres, so that what a message prints is allowed.
 pub(crate) fn greatest_start_z_m(airframe: &Airframe, initial: &InitialState) -> f64 {
     let rotation = PlantState::at_rest(initial).body.rotation();
@@ -130,8 +132,8 @@ pub(crate) fn greatest_start_z_m(airframe: &Airframe, initial: &InitialState) ->
 }
 
 /// Whether no foot can touch the ground in any attitude.
-fn is_above<T: Valued>(body: &RigidBody<T>, reach_m: f64) -> bool {
-    body.position_m.z.value() < -reach_m
+fn is_above<T: Valued>(body: &RigidBody<T>, ground_z_m: f64, reach_m: f64) -> bool {
+    body.position_m.z.value() - ground_z_m < -reach_m
 }
 
 /// No foot is farther from the centre of mass, m.
@@ -147,8 +149,13 @@ fn feet(airframe: &Airframe) -> [Vector3<f64>; 4] {
 }
 
 /// How deep a foot, FRD from the centre of mass, m, is in the ground, m.
-fn depth_m<T: Real>(body: &RigidBody<T>, orientation: &Orientation<T>, foot: &Vector3<T>) -> T {
-    body.position_m.z + orientation.in_world(foot).z
+fn depth_m<T: Real>(
+    body: &RigidBody<T>,
+    ground_z_m: T,
+    orientation: &Orientation<T>,
+    foot: &Vector3<T>,
+) -> T {
+    body.position_m.z - ground_z_m + orientation.in_world(foot).z
 }
 
 /// No foot pushes harder, N: 200 g, so that a fall from any height stays a number.
@@ -228,7 +235,8 @@ mod tests {
     }
 
     fn force(depth_m: f64, velocity_m_s: [f64; 3]) -> Vector3<f64> {
-        let ground = contact(&airframe(), &level(depth_m, velocity_m_s), reach_m(&airframe()), &mut ByValue);
+        let ground =
+            contact(&airframe(), &level(depth_m, velocity_m_s), 0.0, reach_m(&airframe()), &mut ByValue);
         assert!(ground.torque_n_m.norm() < 1e-9 * (1.0 + ground.force_n.norm()), "level feet share a load");
         ground.force_n
     }
@@ -269,19 +277,19 @@ mod tests {
         let depth = 0.01;
         let mut body = level(depth - 0.25 * libm::sin(roll), [0.0; 3]);
         body.attitude = rotation.into_inner();
-        let ground = contact(&airframe(), &body, reach_m(&airframe()), &mut ByValue);
+        let ground = contact(&airframe(), &body, 0.0, reach_m(&airframe()), &mut ByValue);
         let load = 0.5 * 2500.0 * depth;
         assert!((ground.force_n - Vector3::new(0.0, 0.0, -load)).norm() < 1e-9, "{ground:?}");
         let torque = Vector3::new(-0.25 * load * libm::cos(roll), 0.0, 0.0);
         assert!((ground.torque_n_m - torque).norm() < 1e-9, "{ground:?}");
         // A rate about the down axis moves that foot backwards, and friction pulls it forward.
         body.body_rate_rad_s.z = 1.0;
-        let spun = contact(&airframe(), &body, reach_m(&airframe()), &mut ByValue);
+        let spun = contact(&airframe(), &body, 0.0, reach_m(&airframe()), &mut ByValue);
         assert!((spun.force_n.x - 0.7 * load).abs() < 1e-9 && spun.torque_n_m.z < 0.0, "{spun:?}");
     }
 
     fn is_held(airframe: &Airframe, body: &RigidBody, pull: &External) -> bool {
-        HoldingMargins::new(airframe, body, pull).is_held()
+        HoldingMargins::new(airframe, body, 0.0, pull).is_held()
     }
 
     fn pull(force_n: f64, torque_n_m: f64) -> External {

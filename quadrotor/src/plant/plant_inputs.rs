@@ -29,6 +29,9 @@ pub struct PlantInputs<T = f64> {
     pub disturbance: Disturbance<T>,
     /// What is wrong with each rotor, in the order of the airframe's layout.
     pub rotor_faults: [Option<RotorFault>; 4],
+    /// z of the ground below the vehicle, NED, m: zero on flat ground. It is level as far as the feet and the rotors reach. Without
+    /// effect in a plant without ground.
+    pub ground_z_m: T,
 }
 
 /// Rotors that are commanded to stand still.
@@ -38,10 +41,15 @@ impl<T: Real> Default for Actuation<T> {
     }
 }
 
-/// Rotors that are commanded to stand still, in still air.
+/// Rotors that are commanded to stand still, in still air over flat ground.
 impl<T: Real> Default for PlantInputs<T> {
     fn default() -> Self {
-        Self { actuation: Actuation::default(), disturbance: Disturbance::default(), rotor_faults: [None; 4] }
+        Self {
+            actuation: Actuation::default(),
+            disturbance: Disturbance::default(),
+            rotor_faults: [None; 4],
+            ground_z_m: T::zero(),
+        }
     }
 }
 
@@ -92,7 +100,8 @@ impl PlantInputs {
             let valid = self.rotor_faults.iter().flatten().all(|fault| fault.is_valid());
             (!valid).then_some("rotor_faults")
         };
-        drive.or_else(|| self.disturbance.not_finite()).or_else(faults)
+        let ground = || (!self.ground_z_m.is_finite()).then_some("ground_z");
+        drive.or_else(|| self.disturbance.not_finite()).or_else(faults).or_else(ground)
     }
 }
 
@@ -121,6 +130,7 @@ impl<T: Scalar + Copy> PlantInputs<T> {
             actuation,
             disturbance: self.disturbance.zip_map(&other.disturbance, &f),
             rotor_faults: self.rotor_faults,
+            ground_z_m: f(self.ground_z_m, other.ground_z_m),
         }
     }
 }

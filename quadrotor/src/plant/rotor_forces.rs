@@ -20,8 +20,8 @@ pub(crate) struct RotorForces<T> {
 pub(crate) struct Surroundings<T> {
     /// NED, m/s.
     pub(crate) wind_m_s: Vector3<T>,
-    /// Whether there is ground at z = 0.
-    pub(crate) ground_plane: bool,
+    /// z of the ground, NED, m, if there is any.
+    pub(crate) ground_z_m: Option<T>,
 }
 
 impl<T: Real> RotorForces<T> {
@@ -61,8 +61,8 @@ impl<T: Real> RotorForces<T> {
             let lateral_m2_s2 = air.x * air.x + air.y * air.y;
             let mut thrust_n =
                 aerodynamics.thrust_n(index, [speed * k1 * speed, speed, -air.z, lateral_m2_s2], branches);
-            if around.ground_plane {
-                let height_m = -(body.position_m.z + orientation.in_world(&place).z);
+            if let Some(ground_z_m) = around.ground_z_m {
+                let height_m = -(body.position_m.z - ground_z_m + orientation.in_world(&place).z);
                 let there = [thrust_n, height_m, upright, lateral_m2_s2];
                 thrust_n *= aerodynamics.ground_ratio(index, there, branches);
             }
@@ -86,7 +86,7 @@ mod tests {
     use crate::{Airframe, InitialState, PlantState, RotorAerodynamics, wrench_of_rotors};
 
     const CALM: Surroundings<f64> =
-        Surroundings { wind_m_s: Vector3::new(0.0, 0.0, 0.0), ground_plane: true };
+        Surroundings { wind_m_s: Vector3::new(0.0, 0.0, 0.0), ground_z_m: Some(0.0) };
 
     fn state(speeds: [f64; 4], velocity_m_s: [f64; 3]) -> PlantState {
         let initial = InitialState { velocity_m_s, position_m: [0.0, 0.0, -50.0], ..InitialState::default() };
@@ -146,7 +146,7 @@ mod tests {
         // In a wind of the same velocity nothing drags, however it leans.
         moving = state([250.0; 4], [3.0, -4.0, 7.0]);
         moving.body.attitude = UnitQuaternion::from_euler_angles(0.4, -0.3, 2.0).into_inner();
-        let drifting = Surroundings { wind_m_s: moving.body.velocity_m_s, ground_plane: false };
+        let drifting = Surroundings { wind_m_s: moving.body.velocity_m_s, ground_z_m: None };
         assert_eq!(RotorForces::new(&airframe, &moving, &drifting, &mut ByValue).lateral_n.norm(), 0.0);
     }
 
@@ -174,7 +174,7 @@ mod tests {
         low.body.attitude = UnitQuaternion::from_euler_angles(0.2, 0.0, 0.0).into_inner();
         let forces = RotorForces::new(&airframe, &low, &CALM, &mut ByValue);
         assert!(forces.wrench.torque_n_m.x < -0.005 && forces.wrench.torque_n_m.y.abs() < 1e-15);
-        let none = Surroundings { ground_plane: false, ..CALM };
+        let none = Surroundings { ground_z_m: None, ..CALM };
         assert!(RotorForces::new(&airframe, &low, &none, &mut ByValue).wrench.torque_n_m.norm() < 1e-15);
     }
 }

@@ -18,7 +18,11 @@ impl Plant {
         inputs: &[PlantInputs; LANES],
         h_s: f64,
     ) -> Option<[PlantState; LANES]> {
-        if self.has_ground() && !states.iter().all(|state| cannot_be_held(&state.body, self.reach_m())) {
+        let mut flown = states.iter().zip(inputs);
+        let is_clear = |(state, inputs): (&PlantState, &PlantInputs)| {
+            cannot_be_held(&state.body, inputs.ground_z_m, self.reach_m())
+        };
+        if self.has_ground() && !flown.all(is_clear) {
             return None;
         }
         let (inputs, mut branches) = (gathered_inputs(inputs)?, Unanimous::new());
@@ -68,6 +72,7 @@ fn gathered_inputs(inputs: &[PlantInputs; LANES]) -> Option<PlantInputs<Lanes>> 
             wind_m_s: vectors(|disturbance| &disturbance.wind_m_s),
         },
         rotor_faults,
+        ground_z_m: Lanes::new(from_fn(|lane| inputs[lane].ground_z_m)),
     })
 }
 
@@ -109,10 +114,11 @@ mod tests {
         fn inputs()(
             command_rad_s in prop::array::uniform4(0.0..450.0), force in prop::array::uniform3(-2.0..2.0),
             torque in prop::array::uniform3(-0.1..0.1), wind in prop::array::uniform3(-5.0..5.0),
+            ground_z_m in -0.5..0.5,
         ) -> PlantInputs {
             let disturbance =
                 Disturbance { force_n: force.into(), torque_n_m: torque.into(), wind_m_s: wind.into() };
-            PlantInputs { disturbance, ..PlantInputs::rotor_speeds(command_rad_s) }
+            PlantInputs { disturbance, ground_z_m, ..PlantInputs::rotor_speeds(command_rad_s) }
         }
     }
 

@@ -183,3 +183,65 @@ fn an_allowed_start_does_not_throw_the_vehicle_up() {
         }
     }
 }
+
+/// z of the top of a plateau, m.
+const PLATEAU_Z_M: f64 = -12.0;
+
+fn over_plateau(inputs: PlantInputs) -> PlantInputs {
+    PlantInputs { ground_z_m: PLATEAU_Z_M, ..inputs }
+}
+
+/// It falls on a plateau, rests g/ω² = 9.81/50² m deep in it, and a wind does not move it.
+#[test]
+fn it_stands_on_a_plateau_as_on_flat_ground() {
+    let plant = Plant::new(&draggy(), &Environment { ground_plane: true });
+    let above = InitialState { position_m: [0.0, 0.0, PLATEAU_Z_M - 0.5], ..InitialState::default() };
+    let windy = Disturbance { wind_m_s: Vector3::new(3.0, -4.0, 0.0), ..Disturbance::default() };
+    let fall = |state, disturbance| {
+        let inputs = over_plateau(pulled(disturbance));
+        (0..3_000).fold(state, |state, _| plant.step(&state, &inputs, 1e-3))
+    };
+    let stands = fall(PlantState::at_rest(&above), Disturbance::default());
+    let depth_m = stands.body.position_m.z - PLATEAU_Z_M;
+    assert!((depth_m - GRAVITY_M_S2 / 2_500.0).abs() < 1e-9, "{depth_m}");
+    assert_eq!(fall(stands, windy).body.position_m.xy(), stands.body.position_m.xy());
+    // Over its edge it falls on.
+    let lower = pulled(Disturbance::default());
+    let fallen = (0..100).fold(stands, |state, _| plant.step(&state, &lower, 1e-3));
+    assert!((fallen.body.velocity_m_s.z - 0.1 * GRAVITY_M_S2).abs() < 0.05, "{}", fallen.body.velocity_m_s.z);
+}
+
+/// Cheeseman and Bennett: T = T∞/(1 − (R/4z)²) at a height z above whatever ground there is.
+#[test]
+fn the_ground_effect_is_that_of_the_height_above_the_plateau() {
+    let mut airframe = Airframe::default();
+    airframe.rotor_aerodynamics.ground_effect = true;
+    let radius_m = airframe.rotor_aerodynamics.radius_m;
+    let plant = Plant::new(&airframe, &Environment { ground_plane: true });
+    for height_m in [0.3, 0.5, 1.0] {
+        let position_m = [2.0, -1.0, PLATEAU_Z_M - height_m];
+        let state = PlantState::hovering(&InitialState { position_m, ..InitialState::default() }, &airframe);
+        let inputs = over_plateau(PlantInputs::rotor_speeds(state.rotor_speed_rad_s));
+        let share = plant.wrench(&state, &inputs).thrust_n / airframe.weight_n();
+        let expected = 1.0 / (1.0 - (radius_m / (4.0 * height_m)).powi(2));
+        assert!((share - expected).abs() < 1e-9, "{height_m} m: {share}, expected {expected}");
+    }
+}
+
+/// A flight stands on the plateau, climbs from it, and learns nothing there that it would not learn on flat ground: all of it is the
+/// flight over flat ground, higher up.
+#[test]
+fn a_flight_from_a_plateau_is_the_one_from_flat_ground() {
+    let flown = |ground_z_m: f64| {
+        let configuration = over_ground(ground_z_m, [0.0; 3]);
+        let mut inputs = Inputs { armed: false, ground_z_m, ..Inputs::default() };
+        inputs.reference.position_m = Vector3::new(1.0, 0.0, ground_z_m - 3.0);
+        let mut flight = Simulation::new(&configuration, &inputs).unwrap();
+        flight.advance_to(1_000_000, &inputs).unwrap();
+        inputs.armed = true;
+        flight.advance_to(6_000_000, &inputs).unwrap();
+        flight.outputs().position_m - Vector3::z() * ground_z_m
+    };
+    let difference_m = (flown(PLATEAU_Z_M) - flown(0.0)).norm();
+    assert!(difference_m < 1e-9, "{difference_m}");
+}

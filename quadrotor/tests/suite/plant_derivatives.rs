@@ -37,6 +37,7 @@ impl Point {
                 actuation,
                 disturbance: Disturbance { force_n: vector(4), torque_n_m: vector(7), wind_m_s: vector(10) },
                 rotor_faults: [None, fault, None, None],
+                ground_z_m: 0.0,
             },
         }
     }

@@ -24,6 +24,7 @@ mod settings;
 mod sharing;
 mod start_parameters;
 mod suggestion;
+mod terrain_tables;
 mod text_file;
 mod traffic;
 mod view;

@@ -312,7 +312,9 @@ pub(super) fn vehicle(
         chosen.note
     });
     let [north_m, east_m] = arguments.formation.unwrap_or_default().start_m(number, count);
-    vehicle.configuration.initial.position_m = [north_m, east_m, 0.0];
+    let ground_z_m = vehicle.surroundings.terrain.z_m([north_m, east_m]);
+    check_start(number, ground_z_m)?;
+    vehicle.configuration.initial.position_m = [north_m, east_m, ground_z_m];
     vehicle.configuration.sensors.seed = noise_seed(arguments, number);
     let windy = wind.speed_m_s > 0.0 || gusts_m_s > 0.0;
     let drag_n_s_m =
@@ -320,9 +322,27 @@ pub(super) fn vehicle(
     let chosen = set_parameters(&mut vehicle, parameters, &named_parameters(arguments, number)?)?;
     let note = if windy { wind_drag::note(&vehicle.configuration, drag_n_s_m, &chosen.names) } else { None };
     let home_m = Vector3::from(vehicle.configuration.initial.position_m);
-    let site = Site { identity, frame: LocalFrame::new(vehicle.origin), home_m };
+    let site = Site {
+        identity,
+        frame: LocalFrame::new(vehicle.origin),
+        home_m,
+        terrain: vehicle.surroundings.terrain.clone(),
+    };
     vehicle.plans = plans(arguments, system_id, parameters, &site)?;
     Ok((vehicle, airframe_note.into_iter().chain(note).chain(chosen.warnings).collect()))
+}
+
+/// Vehicles start at or above the height of the origin.
+fn check_start(number: usize, ground_z_m: f64) -> Result<(), Failure> {
+    if ground_z_m <= 0.0 {
+        return Ok(());
+    }
+    let reason = format!(
+        "the ground where vehicle {} starts is {ground_z_m:.2} m below the origin; allowed at or above it: raise all heights, and lower \
+         the origin's altitude by as much",
+        number + 1
+    );
+    Err(Failure::Value { name: "--world".to_owned(), reason })
 }
 
 /// The plans of a vehicle: its mission's file, or else those that are kept beside its parameters.
@@ -341,7 +361,7 @@ fn plans(
 
 /// What stands and flies around every vehicle.
 fn surroundings(arguments: &Arguments) -> Result<Surroundings, Failure> {
-    let obstacles = arguments.world.as_deref().map(read_world).transpose()?.unwrap_or_default();
+    let (obstacles, terrain) = arguments.world.as_deref().map(read_world).transpose()?.unwrap_or_default();
     let mut aircraft = Vec::new();
     for choice in arguments.traffic.iter().flatten() {
         aircraft.append(&mut choice.aircraft(aircraft.len())?);
@@ -354,7 +374,7 @@ fn surroundings(arguments: &Arguments) -> Result<Surroundings, Failure> {
         let reason = format!("two aircraft have the address {id}; give each an `icao` of its own");
         return Err(Failure::Value { name: "--traffic".to_owned(), reason });
     }
-    Ok(Surroundings { obstacles, aircraft })
+    Ok(Surroundings { obstacles, aircraft, terrain })
 }
 
 /// Parameters that flags name: those of the noise, then `--set`.

@@ -9,6 +9,7 @@ use quadrotor::{
 };
 use vehicle::estimation::TrueMotion;
 use vehicle::foreign::{ForeignModel, drive};
+use vehicle::surroundings::Terrain;
 use vehicle::world::{LocalFrame, Wind};
 use vehicle::{FlightError, TICK_US, VehicleSettings};
 
@@ -37,6 +38,7 @@ pub struct Rig {
     instruments: Instruments,
     plant: Plant,
     state: PlantState,
+    terrain: Terrain,
     /// What moves in place of our plant, if anything does, and its acceleration, m/s².
     foreign: Option<(Box<dyn ForeignModel>, Vector3<f64>)>,
     time_us: u64,
@@ -61,6 +63,7 @@ impl Rig {
             mounting,
             frame: LocalFrame::new(settings.origin),
             wind: Wind::new(settings.wind),
+            terrain: settings.surroundings.terrain.clone(),
             instruments: Instruments::new(settings.wind.seed),
             plant: Plant::new(&configuration.airframe, &configuration.environment),
             state: PlantState::at_rest(&configuration.initial),
@@ -136,7 +139,7 @@ impl Rig {
         let mut motion = self.motion(&Vector3::zeros());
         let mut wind_m_s = Vector3::zeros();
         while self.time_us < goal_us {
-            let height_m = -self.state.body.position_m.z;
+            let height_m = self.ground_z_m() - self.state.body.position_m.z;
             wind_m_s = self.wind.velocity_m_s(self.time_us, height_m);
             self.state = self.moved(&self.inputs(wind_m_s))?;
             self.time_us += TICK_US;
@@ -164,7 +167,13 @@ impl Rig {
     /// What acts on the plant.
     fn inputs(&self, wind_m_s: Vector3<f64>) -> PlantInputs {
         let disturbance = Disturbance { wind_m_s, ..Disturbance::default() };
-        PlantInputs { disturbance, ..PlantInputs::rotor_speeds(self.command_rad_s) }
+        let ground_z_m = self.ground_z_m();
+        PlantInputs { disturbance, ground_z_m, ..PlantInputs::rotor_speeds(self.command_rad_s) }
+    }
+
+    /// z of the ground below, m.
+    fn ground_z_m(&self) -> f64 {
+        self.terrain.z_below_m(&self.state.body.position_m)
     }
 
     fn report(&mut self, motion: &TrueMotion, wind_m_s: &Vector3<f64>) -> Vec<MavMessage> {

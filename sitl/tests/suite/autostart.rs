@@ -17,7 +17,12 @@ const PLAN: &str = "QGC WPL 110\n\
 
 fn with_plan(identity: Identity, autostart: bool) -> VehicleSettings {
     let mut settings = settings(identity);
-    let site = Site { identity, frame: LocalFrame::new(settings.origin), home_m: Vector3::zeros() };
+    let site = Site {
+        identity,
+        frame: LocalFrame::new(settings.origin),
+        home_m: Vector3::zeros(),
+        terrain: vehicle::surroundings::Terrain::default(),
+    };
     settings.plans = file::parse(PLAN, &site).expect("a plan");
     settings.autostart = autostart;
     settings

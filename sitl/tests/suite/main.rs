@@ -62,6 +62,7 @@ mod simulation_parameters;
 mod smart_return;
 mod soak;
 mod survey;
+mod terrain;
 mod traffic;
 mod vehicle_loss;
 mod wind_drag;

@@ -10,7 +10,12 @@ use vehicle::world::{Geodetic, LocalFrame};
 
 fn site(identity: Identity) -> Site {
     let origin = Geodetic::default();
-    Site { identity, frame: LocalFrame::new(origin), home_m: nalgebra::Vector3::zeros() }
+    Site {
+        identity,
+        frame: LocalFrame::new(origin),
+        home_m: nalgebra::Vector3::zeros(),
+        terrain: vehicle::surroundings::Terrain::default(),
+    }
 }
 
 /// Reads a text as a file, and hands its name to the errors.

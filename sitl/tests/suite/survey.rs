@@ -25,7 +25,12 @@ struct Told {
 fn survey(identity: Identity) -> (Bench, Told) {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/suite/corpus/survey.plan");
     let origin = Geodetic::default();
-    let site = Site { identity, frame: LocalFrame::new(origin), home_m: Vector3::zeros() };
+    let site = Site {
+        identity,
+        frame: LocalFrame::new(origin),
+        home_m: Vector3::zeros(),
+        terrain: vehicle::surroundings::Terrain::default(),
+    };
     let plans = read_plans(&path, &site).expect("a plan");
     let mut bench = Bench::new(identity);
     let items = plans.get(PlanKind::Mission).items();

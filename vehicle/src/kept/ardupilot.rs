@@ -115,9 +115,9 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("WPNAV_RFND_USE", 1, 0..=1, "", "Use of a range finder in missions"),
         ("WP_RFND_USE", 1, 0..=1, "", "Use of a range finder in missions"),
         ("LAND_REPOSITION", 1, 0..=1, "", "Sticks move the place of a landing"),
-        ("TERRAIN_ENABLE", 1, 0..=1, "", "Use of terrain data; the ground is flat here"),
-        ("TERRAIN_FOLLOW", 0, 0..=1, "", "Follow the terrain; the ground is flat here"),
-        ("SIM_TERRAIN", 1, 0..=1, "", "Ground follows terrain data; it is flat here"),
+        ("TERRAIN_ENABLE", 1, 0..=1, "", "Use of terrain data; here the ground is known"),
+        ("TERRAIN_FOLLOW", 0, 0..=1, "", "Follow the terrain; here ways are straight"),
+        ("SIM_TERRAIN", 1, 0..=1, "", "Ground follows terrain data; here that of --world"),
     ]),
     kept!(ArduPilot, "the estimator fuses GPS, barometer and magnetometer with the figures of the simulated parts (--sensors)", real [
         ("EK3_ALT_M_NSE", 2.0, 0.1..=100.0, "m", "Noise of heights"),

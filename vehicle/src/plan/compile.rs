@@ -113,7 +113,12 @@ mod tests {
 
     fn site(identity: Identity) -> Site {
         let origin = Geodetic { latitude_deg: 47.0, longitude_deg: 8.0, altitude_m: 400.0 };
-        Site { identity, frame: LocalFrame::new(origin), home_m: Vector3::new(1.0, 2.0, -3.0) }
+        Site {
+            identity,
+            frame: LocalFrame::new(origin),
+            home_m: Vector3::new(1.0, 2.0, -3.0),
+            terrain: crate::surroundings::Terrain::default(),
+        }
     }
 
     fn item(command: u16, parameters: [f64; 4], position: [f64; 3]) -> MissionItem {

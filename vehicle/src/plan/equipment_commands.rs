@@ -319,7 +319,12 @@ mod tests {
 
     fn step(identity: Identity, command: u16, [a, b, c, d, x, y, z]: [f64; 7]) -> Step {
         let origin = Geodetic { latitude_deg: 47.0, longitude_deg: 8.0, altitude_m: 400.0 };
-        let site = Site { identity, frame: LocalFrame::new(origin), home_m: Vector3::zeros() };
+        let site = Site {
+            identity,
+            frame: LocalFrame::new(origin),
+            home_m: Vector3::zeros(),
+            terrain: crate::surroundings::Terrain::default(),
+        };
         let (parameters, position) = ([a, b, c, d], [x, y, z]);
         let item = MissionItem { frame: frame::MISSION, command, parameters, position, autocontinue: true };
         let items = [MissionItem::home([47.0, 8.0, 400.0]), item];

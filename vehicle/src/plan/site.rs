@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::{Altitude, MissionItem, Place};
 use crate::identity::Identity;
+use crate::surroundings::Terrain;
 use crate::world::{Geodetic, LocalFrame};
 
 /// MAV_FRAME.
@@ -23,7 +24,7 @@ pub mod frame {
 }
 
 /// What the places of a plan refer to.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Site {
     /// Whose conventions hold.
     pub identity: Identity,
@@ -31,6 +32,8 @@ pub struct Site {
     pub frame: LocalFrame,
     /// Home, NED, m.
     pub home_m: Vector3<f64>,
+    /// The ground.
+    pub terrain: Terrain,
 }
 
 impl Site {
@@ -40,7 +43,7 @@ impl Site {
     }
 
     /// The place of an item. Latitude and longitude that are no numbers, or both zero, leave it open, as clients send them for
-    /// "here"; the terrain is the flat ground of the simulation.
+    /// "here"; an altitude above the terrain is then one above the ground at home.
     ///
     /// `None` for an unknown frame or a latitude or longitude that there is not.
     pub fn place(&self, item: &MissionItem) -> Option<Place> {
@@ -65,20 +68,24 @@ impl Site {
             let local = self.frame.to_local_m(&place);
             Some([local.x, local.y])
         };
-        let altitude = finite(z).map(|altitude_m| self.altitude(item.frame, altitude_m));
+        let altitude = finite(z).map(|altitude_m| {
+            self.altitude(item.frame, altitude_m, horizontal_m.unwrap_or([self.home_m.x, self.home_m.y]))
+        });
         Some(Place { horizontal_m, altitude })
     }
 
-    /// z, m, of an altitude, m, in a global frame, with home where it is now.
-    pub fn down_m(&self, frame: u8, altitude_m: f64) -> f64 {
-        self.altitude(frame, altitude_m).down_m(self.home_m.z)
+    /// z, m, of an altitude, m, in a global frame, at a place north and east, m, with home where it is now.
+    pub fn down_m(&self, frame: u8, altitude_m: f64, place_m: [f64; 2]) -> f64 {
+        self.altitude(frame, altitude_m, place_m).down_m(self.home_m.z)
     }
 
-    /// An altitude, m, in a global frame. Terrain is the flat ground of the simulation.
-    fn altitude(&self, frame: u8, altitude_m: f64) -> Altitude {
+    /// An altitude, m, in a global frame, at a place north and east, m.
+    fn altitude(&self, frame: u8, altitude_m: f64, place_m: [f64; 2]) -> Altitude {
         match frame {
             frame::GLOBAL_RELATIVE | frame::GLOBAL_RELATIVE_INT => Altitude::AboveHome(altitude_m),
-            frame::GLOBAL_TERRAIN | frame::GLOBAL_TERRAIN_INT => Altitude::Down(-altitude_m),
+            frame::GLOBAL_TERRAIN | frame::GLOBAL_TERRAIN_INT => {
+                Altitude::Down(self.terrain.z_m(place_m) - altitude_m)
+            }
             _ => Altitude::Down(self.frame.origin().altitude_m - altitude_m),
         }
     }

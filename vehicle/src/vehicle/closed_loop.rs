@@ -34,6 +34,8 @@ pub struct Conditions<'a> {
     pub load: (Vector3<f64>, Vector3<f64>),
     /// True height above the ground, m.
     pub height_m: f64,
+    /// z of that ground, m.
+    pub ground_z_m: f64,
     /// Whether the rotors may turn.
     pub armed: bool,
     /// What is wrong with the rotors.
@@ -43,12 +45,16 @@ pub struct Conditions<'a> {
 }
 
 impl ClosedLoop {
-    /// At rest, disarmed.
+    /// At rest, disarmed, above ground at this z, m.
     ///
     /// # Errors
     /// As [`Simulation::new`].
-    pub fn new(configuration: &Configuration, wind: WindSettings) -> Result<Self, ConfigurationError> {
-        let inputs = Inputs { armed: false, ..Inputs::default() };
+    pub fn new(
+        configuration: &Configuration,
+        wind: WindSettings,
+        ground_z_m: f64,
+    ) -> Result<Self, ConfigurationError> {
+        let inputs = Inputs { armed: false, ground_z_m, ..Inputs::default() };
         let simulation = Simulation::new(configuration, &inputs)?;
         let limits = EasedLimits::new(&configuration.flyable_limits());
         Ok(Self { simulation, foreign: None, limits, wind: Wind::new(wind), wind_m_s: Vector3::zeros() })
@@ -136,6 +142,7 @@ impl ClosedLoop {
         // Inputs are large: they are completed in their place.
         let mut inputs = steering.apply(&self.simulation, &self.limits, conditions.outputs, dt_s);
         self.wind_m_s = self.wind.velocity_m_s(time_us, conditions.height_m);
+        inputs.ground_z_m = conditions.ground_z_m;
         let (force_n, torque_n_m) = conditions.load;
         inputs.disturbance = Disturbance { force_n, torque_n_m, wind_m_s: self.wind_m_s };
         inputs.armed = conditions.armed;

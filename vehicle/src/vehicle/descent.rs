@@ -35,7 +35,8 @@ pub fn descend(situation: &Situation, proposal: &mut Proposal, above: Option<[f6
         return;
     }
     let above = situation.landing_target_m.or(above);
-    let height_m = -situation.outputs.setpoint.position_m.z;
+    let reference_m = &situation.outputs.setpoint.position_m;
+    let height_m = situation.terrain.z_below_m(reference_m) - reference_m.z;
     let slow = situation.conduct.land_speed_m_s;
     // Slower towards the ground, within what the shaper is allowed.
     let limits = situation.braking_limits();

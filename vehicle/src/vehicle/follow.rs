@@ -233,7 +233,7 @@ impl Follow {
     fn height_z_m(&self, target: &TargetMotion, situation: &Situation) -> f64 {
         let from_z_m = match situation.conduct.follow.height {
             FollowHeight::Home => situation.home.position_m.z,
-            FollowHeight::Ground => 0.0,
+            FollowHeight::Ground => situation.terrain.z_below_m(&target.position_m),
             FollowHeight::Target => target.position_m.z,
         };
         from_z_m - self.place.height_m

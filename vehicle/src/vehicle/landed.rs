@@ -31,7 +31,7 @@ const PRESSED_M: f64 = 0.2;
 /// Below this share of the weight the rotors do not carry it.
 pub(super) const UNLOADED: f64 = 0.75;
 
-/// Detects touch-down and lift-off on flat ground at z = 0.
+/// Detects touch-down and lift-off on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LandedDetector {
     landed: bool,
@@ -55,9 +55,16 @@ impl LandedDetector {
         self.settled
     }
 
-    /// One look. `armed` tells whether rotors turn at all, `controlled` whether the reference is flown.
-    pub fn update(&mut self, outputs: &Outputs, weight_n: f64, armed: bool, controlled: bool) {
-        let height_m = -outputs.position_m.z;
+    /// One look. `ground_z_m` is z of the ground below, `armed` tells whether rotors turn at all, `controlled` whether the reference is flown.
+    pub fn update(
+        &mut self,
+        outputs: &Outputs,
+        ground_z_m: f64,
+        weight_n: f64,
+        armed: bool,
+        controlled: bool,
+    ) {
+        let height_m = ground_z_m - outputs.position_m.z;
         let pressed = controlled && outputs.setpoint.position_m.z > outputs.position_m.z + PRESSED_M;
         // A vehicle that has come to lie on its back is not carried either.
         let lift_n = outputs.thrust_n * cos(outputs.attitude_rad.x) * cos(outputs.attitude_rad.y);

@@ -65,7 +65,8 @@ impl Landing {
         let weight_n = situation.configuration.airframe.weight_n();
         let controlled = proposal.steering().kind() == SteeringKind::Position;
         let stood = self.is_landed();
-        self.detector.update(&situation.felt(), weight_n, situation.armed, controlled);
+        let ground_z_m = situation.true_ground_z_m();
+        self.detector.update(&situation.felt(), ground_z_m, weight_n, situation.armed, controlled);
         if self.is_landed() && !stood {
             self.touch_down(situation, proposal);
         } else if stood && !self.is_landed() {

@@ -47,7 +47,7 @@ fn stops_as_safely(situation: &Situation, wanted: &Limits) -> bool {
     if (later_m - sooner_m).norm() < FARTHER_M {
         return true;
     }
-    let grounded = later_m.z > 0.0;
+    let grounded = later_m.z > situation.terrain.z_below_m(&later_m);
     let bounded = situation.fence().is_some_and(|fence| fence.bounds());
     !(grounded || bounded && breach_ahead(situation, wanted).is_some())
 }

@@ -146,7 +146,9 @@ impl Machines {
             vibration: VibrationWatch::default(),
             hold: HoldWatch::default(),
             crash: CrashWatch::default(),
-            landing: Landing::new(-truth.position_m.z),
+            landing: Landing::new(
+                settings.surroundings.terrain.z_below_m(&truth.position_m) - truth.position_m.z,
+            ),
             motor_tests: MotorTests::default(),
             takeoff: Takeoff::default(),
             pilot_takeoff: PilotTakeoff::default(),

@@ -102,7 +102,8 @@ impl ObstacleWatch {
 
     /// Whether there is a rangefinder.
     pub fn has_rangefinder(&self, situation: &Situation) -> bool {
-        !self.obstacles.is_empty() || situation.conduct.surroundings.rangefinder_kind > 0
+        let world = !self.obstacles.is_empty() || !situation.terrain.is_flat();
+        world || situation.conduct.surroundings.rangefinder_kind > 0
     }
 
     /// Whether it is switched on.
@@ -164,10 +165,14 @@ impl ObstacleWatch {
     fn look_down(&self, situation: &Situation) -> Option<f64> {
         let truth = situation.truth;
         let down = truth.orientation() * Vector3::z();
-        let ground_m = (down.z > 0.1).then(|| -truth.position_m.z / down.z);
+        let settings = &situation.conduct.surroundings;
+        let ground_m = if situation.terrain.is_flat() {
+            (down.z > 0.1).then(|| -truth.position_m.z / down.z)
+        } else {
+            situation.terrain.along_m(&truth.position_m, &down, settings.rangefinder_farthest_m)
+        };
         let others = self.obstacles.iter().filter_map(|obstacle| obstacle.along_m(&truth.position_m, &down));
         let nearest_m = others.chain(ground_m).fold(f64::INFINITY, f64::min);
-        let settings = &situation.conduct.surroundings;
         let range_m = nearest_m.max(settings.rangefinder_nearest_m);
         (range_m <= settings.rangefinder_farthest_m).then_some(range_m)
     }

@@ -118,7 +118,10 @@ pub fn check_reach(situation: &Situation, program: &Program) -> Result<(), PlanF
             }
         }
         // A landing ends where the ground is.
-        let below_m = place.down_m(situation.home.position_m.z).filter(|down_m| *down_m > 0.0);
+        let here_m = situation.outputs.position_m;
+        let ground_z_m = situation.terrain.z_m(place.horizontal_m.unwrap_or([here_m.x, here_m.y]));
+        let below_m = place.down_m(situation.home.position_m.z).map(|down_m| down_m - ground_z_m);
+        let below_m = below_m.filter(|below_m| *below_m > 0.0);
         if let Some(below_m) = below_m.filter(|_| !matches!(step, Navigate::Land { .. })) {
             let reason = format!("the place is {below_m:.1} m below the ground: raise it");
             return Err(PlanFault::of_item(index, FaultCode::InvalidParameter(7), reason));

@@ -112,7 +112,8 @@ impl RotorWatch {
             loss.place_m = Some(now.position_m.xy().into());
         }
         let feet = situation.felt();
-        let touching = -feet.position_m.z < TOUCHING_M && feet.velocity_m_s.z < TOUCHING_M_S;
+        let height_m = situation.true_ground_z_m() - feet.position_m.z;
+        let touching = height_m < TOUCHING_M && feet.velocity_m_s.z < TOUCHING_M_S;
         loss.touching_since_us = if touching { loss.touching_since_us.or(Some(time_us)) } else { None };
         if loss.touching_since_us.is_some_and(|since_us| time_us - since_us >= TOUCHED_US) {
             proposal.stop_rotors(format!("Disarmed: landed without rotor {}", loss.rotor + 1));
@@ -129,7 +130,7 @@ impl RotorWatch {
         let reference = match loss.place_m {
             Some([x, y]) => {
                 let landing = situation.conduct.land_speed_m_s;
-                let sink = landing + SLOWING_PER_S * (-now.position_m.z - 2.0);
+                let sink = landing + SLOWING_PER_S * (situation.ground_z_m() - now.position_m.z - 2.0);
                 let sink = sink.clamp(landing.min(FASTEST_SINK_M_S), FASTEST_SINK_M_S);
                 PositionReference {
                     velocity_m_s: Vector3::new(0.0, 0.0, sink),

@@ -15,6 +15,7 @@ use crate::fence::Zones;
 use crate::identity::Identity;
 use crate::mode::Mode;
 use crate::plan::Place;
+use crate::surroundings::Terrain;
 use crate::world::{Geodetic, LocalFrame};
 
 /// Everything that a situation refers to.
@@ -41,6 +42,7 @@ pub struct Scene {
     pub rotor_command_rad_s: [f64; 4],
     pub wind_m_s: Vector3<f64>,
     pub pilot: Pilot,
+    pub terrain: Terrain,
     frame: LocalFrame,
 }
 
@@ -98,6 +100,7 @@ impl Scene {
             rotor_command_rad_s: [hover_rad_s; 4],
             wind_m_s: Vector3::zeros(),
             pilot: Pilot::default(),
+            terrain: Terrain::default(),
             frame: LocalFrame::new(origin),
         }
     }
@@ -135,6 +138,7 @@ impl Scene {
             configuration: &self.configuration,
             limits: &self.limits,
             frame: &self.frame,
+            terrain: &self.terrain,
             zones: &self.zones,
             rally_points: &self.rally_points,
             outputs: &self.outputs,

@@ -3,6 +3,7 @@
 use super::conduct::Conduct;
 use super::settings::VehicleSettings;
 use crate::identity::Identity;
+use crate::surroundings::Terrain;
 use crate::world::{Geodetic, LocalFrame, ToldFrame, WindSettings};
 
 /// What only a user changes.
@@ -12,6 +13,7 @@ pub struct Setup {
     conduct: Conduct,
     frame: LocalFrame,
     told: ToldFrame,
+    terrain: Terrain,
     /// What it started with: the wind, and the voltage of the full battery, V.
     wind: WindSettings,
     full_battery_v: f64,
@@ -25,7 +27,9 @@ impl Setup {
         let told = ToldFrame::new(frame);
         let (identity, wind) = (settings.identity, settings.wind);
         let conduct = settings.conduct;
-        let mut setup = Self { identity, conduct, frame, told, wind, full_battery_v, unix_start_us: 0 };
+        let terrain = settings.surroundings.terrain.clone();
+        let unix_start_us = 0;
+        let mut setup = Self { identity, conduct, frame, told, terrain, wind, full_battery_v, unix_start_us };
         setup.set_conduct(conduct);
         setup
     }
@@ -64,6 +68,11 @@ impl Setup {
     /// Moves the origin of the local frame in which clients count.
     pub fn move_origin(&mut self, origin: Geodetic) {
         self.told.move_to(origin);
+    }
+
+    /// The ground.
+    pub fn terrain(&self) -> &Terrain {
+        &self.terrain
     }
 
     /// Time of the start since 1970, µs.

@@ -16,6 +16,7 @@ use crate::fence::{Breach, Fence, Zones};
 use crate::identity::Identity;
 use crate::mode::{Mode, Needs};
 use crate::plan::{Place, Site};
+use crate::surroundings::Terrain;
 use crate::world::LocalFrame;
 
 /// The vehicle as it is now. It consists of references and small copies: it is made anew for every call of a machine behind which it may
@@ -36,6 +37,8 @@ pub struct Situation<'a> {
     pub limits: &'a EasedLimits,
     /// The local frame.
     pub frame: &'a LocalFrame,
+    /// The ground.
+    pub terrain: &'a Terrain,
     /// The zones of the fence plan.
     pub zones: &'a Zones,
     /// The rally points.
@@ -176,7 +179,22 @@ impl<'a> Situation<'a> {
 
     /// What the places of plans refer to.
     pub fn site(&self) -> Site {
-        Site { identity: self.identity, frame: *self.frame, home_m: self.home.position_m }
+        Site {
+            identity: self.identity,
+            frame: *self.frame,
+            home_m: self.home.position_m,
+            terrain: self.terrain.clone(),
+        }
+    }
+
+    /// z of the ground below the place where it takes itself to be, m.
+    pub fn ground_z_m(&self) -> f64 {
+        self.terrain.z_below_m(&self.outputs.position_m)
+    }
+
+    /// z of the ground that is truly below it, m.
+    pub fn true_ground_z_m(&self) -> f64 {
+        self.terrain.z_below_m(&self.truth.position_m)
     }
 
     /// What the feet feel: the true motion, and the reference as far from it as the controllers believe.

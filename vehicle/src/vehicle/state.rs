@@ -59,7 +59,7 @@ impl Vehicle {
     /// # Errors
     /// As [`Simulation::new`](quadrotor::Simulation::new).
     pub fn new(settings: &VehicleSettings) -> Result<Self, ConfigurationError> {
-        Ok(Self::around(settings, ClosedLoop::new(&settings.flown_configuration(), settings.wind)?))
+        Ok(Self::around(settings, closed_loop(settings)?))
     }
 
     /// The same, flown by a closed loop or a plant from elsewhere.
@@ -67,7 +67,7 @@ impl Vehicle {
     /// # Errors
     /// [`FlightError`] if ours cannot be built, or the model starts nowhere.
     pub fn flown_by(settings: &VehicleSettings, model: Box<dyn ForeignModel>) -> Result<Self, FlightError> {
-        let closed_loop = ClosedLoop::new(&settings.flown_configuration(), settings.wind)?;
+        let closed_loop = closed_loop(settings)?;
         Ok(Self::around(settings, closed_loop.flown_by(model)?))
     }
 
@@ -77,7 +77,12 @@ impl Vehicle {
         let perception = Perception::new(&closed_loop, navigation(settings, home_m));
         let frame = LocalFrame::new(settings.origin);
         let home = Home { position_m: home_m, yaw_rad: settings.heading_rad, set_by_user: false };
-        let site = Site { identity: settings.identity, frame, home_m };
+        let site = Site {
+            identity: settings.identity,
+            frame,
+            home_m,
+            terrain: settings.surroundings.terrain.clone(),
+        };
         let program = compile::mission(settings.plans.get(PlanKind::Mission).items(), &site);
         let machines = Machines::new(settings, &configuration, perception.truth(), program);
         let full_battery_v = full_voltage_v(&configuration.airframe, &machines.battery);
@@ -259,10 +264,12 @@ impl Vehicle {
         let (truth, time_us) = (self.perception.truth(), self.time_us());
         let (push_n, torque_n_m) = self.machines.pushes.load(pushes, airframe, truth, time_us);
         let load = (push_n + self.parachute_drag_n(), torque_n_m);
+        let ground_z_m = self.setup.terrain().z_below_m(&truth.position_m);
         let conditions = Conditions {
             load,
             outputs: self.perception.outputs(),
-            height_m: -self.perception.truth().position_m.z,
+            height_m: ground_z_m - truth.position_m.z,
+            ground_z_m,
             armed: self.decided.is_armed(),
             rotor_faults: self.faults().rotors(),
             estimate: self.perception.estimate().map(|estimate| estimate.body),
@@ -322,6 +329,14 @@ impl Vehicle {
     }
 }
 
+/// The closed loop of a vehicle that stands at its start.
+fn closed_loop(settings: &VehicleSettings) -> Result<ClosedLoop, ConfigurationError> {
+    let configuration = settings.flown_configuration();
+    let start_m = Vector3::from(configuration.initial.position_m);
+    let ground_z_m = settings.surroundings.terrain.z_below_m(&start_m);
+    ClosedLoop::new(&configuration, settings.wind, ground_z_m)
+}
+
 /// Instruments and estimator of a vehicle that flies by them, and is told that it stands at a place, NED, m.
 fn navigation(settings: &VehicleSettings, start_m: Vector3<f64>) -> Option<Navigation> {
     (settings.sensors.model == SensorModel::Realistic).then(|| {
@@ -352,6 +367,7 @@ fn situation<'a>(
         configuration: simulation.configuration(),
         limits: closed_loop.limits(),
         frame: setup.frame(),
+        terrain: setup.terrain(),
         zones: plans.zones(),
         rally_points: plans.rally_points(),
         outputs,

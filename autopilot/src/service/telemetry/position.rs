@@ -55,17 +55,18 @@ pub fn home_position(vehicle: &Vehicle) -> MavMessage {
     })
 }
 
-/// ALTITUDE: every kind of it; terrain is the flat ground.
+/// ALTITUDE: every kind of it.
 pub fn altitude(vehicle: &Vehicle) -> MavMessage {
     let position_m = vehicle.outputs().position_m;
-    let above_ground_m = -position_m.z;
-    let amsl_m = vehicle.frame().origin().altitude_m + above_ground_m;
+    let height_m = -position_m.z;
+    let above_ground_m = vehicle.terrain().z_below_m(&position_m) + height_m;
+    let amsl_m = vehicle.frame().origin().altitude_m + height_m;
     MavMessage::ALTITUDE(ALTITUDE_DATA {
         time_usec: vehicle.time_us(),
         altitude_monotonic: amsl_m as f32,
         altitude_amsl: amsl_m as f32,
         altitude_local: -vehicle.told_frame().told_m(&position_m).z as f32,
-        altitude_relative: (vehicle.home().position_m.z + above_ground_m) as f32,
+        altitude_relative: (vehicle.home().position_m.z + height_m) as f32,
         altitude_terrain: above_ground_m as f32,
         bottom_clearance: above_ground_m as f32,
     })

@@ -28,7 +28,12 @@ fn place([x, y, z]: [f64; 3]) -> Place {
 
 fn site() -> Site {
     let origin = Geodetic { latitude_deg: 47.0, longitude_deg: 8.0, altitude_m: 400.0 };
-    Site { identity: Identity::Px4, frame: LocalFrame::new(origin), home_m: Vector3::new(1.0, 2.0, -3.0) }
+    Site {
+        identity: Identity::Px4,
+        frame: LocalFrame::new(origin),
+        home_m: Vector3::new(1.0, 2.0, -3.0),
+        terrain: crate::surroundings::Terrain::default(),
+    }
 }
 
 /// The step of an item that is checked, behind one that it may name.

@@ -22,6 +22,7 @@ use crate::foreign::{ForeignDescription, ForeignMotion};
 use crate::identity::Identity;
 use crate::mode::Mode;
 use crate::plan::{MissionItem, PlanKind, Plans, Site};
+use crate::surroundings::Terrain;
 use crate::world::{LocalFrame, ToldFrame};
 
 impl Vehicle {
@@ -264,6 +265,16 @@ impl Vehicle {
     /// What the places of plans refer to.
     pub fn site(&self) -> Site {
         self.situation().site()
+    }
+
+    /// The ground.
+    pub fn terrain(&self) -> &Terrain {
+        self.setup.terrain()
+    }
+
+    /// Where it takes itself to be, north and east of the origin, m.
+    pub fn horizontal_m(&self) -> [f64; 2] {
+        self.outputs().position_m.xy().into()
     }
 
     /// An item as a download shows it: in ArduPilot's convention the first one of a mission is home.
