@@ -29,9 +29,7 @@ impl Dlqr {
         r: &DMatrix<f64>,
         lambda: f64,
     ) -> Result<Self, DesignError> {
-        if !(lambda > 0.0 && lambda <= 1.0) {
-            return Err(DesignError::Lambda { value: lambda });
-        }
+        check_lambda(lambda)?;
         Self::of_radius(a, b, q, r, lambda)
     }
 
@@ -89,4 +87,9 @@ impl Dlqr {
     pub fn radius(&self) -> f64 {
         self.radius
     }
+}
+
+/// A degree of stability is 0 < λ ≤ 1.
+pub(crate) fn check_lambda(lambda: f64) -> Result<(), DesignError> {
+    if lambda > 0.0 && lambda <= 1.0 { Ok(()) } else { Err(DesignError::Lambda { value: lambda }) }
 }

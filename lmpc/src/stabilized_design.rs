@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::dlqr::check_lambda;
 use crate::laguerre::InputBasis;
 use crate::optimal_gain::OptimalGain;
 use crate::{Augmented, DesignError, Dlqr, LaguerreBasis, Weights, solve_stein, spectral_radius, validate};
@@ -73,12 +74,31 @@ impl StabilizedDesign {
         bases: &[LaguerreBasis],
         lambda: f64,
     ) -> Result<Self, DesignError> {
+        let dlqr = Dlqr::new(model.a(), model.b(), weights.q(), weights.r(), lambda)?;
+        Self::beside(&dlqr, model, weights, stabilizing_gain, bases)
+    }
+
+    /// The same beside the [regulator](Self::dlqr) of the model and the weights where that is known already, which spares its Riccati
+    /// equation: several designs with other bases or feedbacks have the same one. λ is the regulator's [radius](Dlqr::radius).
+    ///
+    /// # Errors
+    /// [`DesignError::Dimension`] when the regulator is one of another number of states or inputs, [`DesignError::Lambda`] when its
+    /// radius is above 1, and those of [`Self::new`].
+    pub fn beside(
+        regulator: &Dlqr,
+        model: &Augmented,
+        weights: &Weights,
+        stabilizing_gain: &DMatrix<f64>,
+        bases: &[LaguerreBasis],
+    ) -> Result<Self, DesignError> {
         let (states, inputs) = (model.states(), model.inputs());
+        let lambda = regulator.radius();
+        check_lambda(lambda)?;
+        validate::shape("K of the regulator", regulator.gain(), (inputs, states))?;
         validate::shape("K_s", stabilizing_gain, (inputs, states))?;
         if bases.len() != inputs {
             return Err(DesignError::BasisCount { expected: inputs, actual: bases.len() });
         }
-        let dlqr = Dlqr::new(model.a(), model.b(), weights.q(), weights.r(), lambda)?;
         if let Some(basis) = bases.iter().find(|basis| basis.scale() >= lambda) {
             return Err(DesignError::LaguerreDecay { scale: basis.scale(), lambda });
         }
@@ -118,7 +138,7 @@ impl StabilizedDesign {
             cost,
             coefficient_gain,
             gain,
-            dlqr,
+            dlqr: regulator.clone(),
             spectral_radius,
             condition_number,
         })

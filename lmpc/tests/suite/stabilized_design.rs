@@ -169,7 +169,21 @@ fn each_precondition_has_its_error() {
     ));
     assert!(matches!(design(gain, std::slice::from_ref(&basis), 1.5), Err(DesignError::Lambda { .. })));
     let nan = DMatrix::from_element(1, 4, f64::NAN);
-    assert!(design(&nan, &[basis], 1.0).is_err());
+    assert!(design(&nan, std::slice::from_ref(&basis), 1.0).is_err());
+    // A regulator that is known already is one of the same model, and stable.
+    let beside = |regulator: &Dlqr| {
+        StabilizedDesign::beside(regulator, &model, &weights, gain, std::slice::from_ref(&basis))
+    };
+    let (a, b, q, r) = (model.a(), model.b(), weights.q(), weights.r());
+    assert_eq!(beside(&regulator), design(gain, std::slice::from_ref(&basis), 1.0));
+    let growing = Dlqr::exponentially_weighted(a, b, q, r, 1.1).unwrap();
+    assert!(matches!(beside(&growing), Err(DesignError::Lambda { .. })));
+    let unit = DMatrix::identity(1, 1);
+    let smaller = Dlqr::new(&unit, &unit, &unit, &unit, 1.0).unwrap();
+    assert!(matches!(
+        beside(&smaller),
+        Err(DesignError::Dimension { name: "K of the regulator", expected: (1, 4), actual: (1, 1) })
+    ));
 }
 
 /// A degree of stability λ: about a feedback that has it, so does the loop.

@@ -93,7 +93,7 @@ impl<const P: usize> LoopProblem<P> {
     /// A design with N = `terms` and a = `scale`, which plans about a feedback with this share of the loop's bandwidth.
     ///
     /// # Errors
-    /// Those of [`LaguerreBasis::new`], [`Dlqr::new`] and [`StabilizedDesign::new`].
+    /// Those of [`LaguerreBasis::new`], [`Dlqr::new`] and [`StabilizedDesign::beside`].
     pub fn design(
         &self,
         terms: usize,
@@ -101,10 +101,9 @@ impl<const P: usize> LoopProblem<P> {
         stabilizing_share: f64,
     ) -> Result<StabilizedDesign, DesignError> {
         let stabilizing = self.stabilizing_gain(stabilizing_share)?;
-        let lambda = self.settings.lambda;
         let basis = LaguerreBasis::new(terms, scale)?;
         let bases: [LaguerreBasis; P] = core::array::from_fn(|_| basis.clone());
-        StabilizedDesign::new(&self.model, &self.weights, &stabilizing, &bases, lambda)
+        StabilizedDesign::beside(&self.regulator, &self.model, &self.weights, &stabilizing, &bases)
     }
 
     /// K_s: the regulator of a share of the loop's bandwidth.
