@@ -34,11 +34,13 @@ pub struct Onlooker {
 }
 
 impl Onlooker {
-    /// Takes in what a vehicle sends, if it is a line for the pilot or an answer to the page.
+    /// Takes in what a vehicle sends, if it is a line for the pilot or an answer to the page. Lines are those to everyone: the
+    /// vehicle introduces itself again to each peer that comes later, but the page has heard it from the start.
     pub(super) fn hear(&mut self, system: u8, time_us: u64, outgoing: &Outgoing) {
+        let is_line = outgoing.message.id() == id::STATUSTEXT;
         let is_ours = match outgoing.to {
-            Destination::Everyone => outgoing.message.id() == id::STATUSTEXT,
-            Destination::Peer(peer) => peer == PAGE.peer,
+            Destination::Everyone => is_line,
+            Destination::Peer(peer) => peer == PAGE.peer && !is_line,
             Destination::Link(_) => false,
         };
         if self.listens && is_ours && self.heard.len() < MOST_WAITING {

@@ -53,9 +53,16 @@ def test_it_draws_the_vehicle_where_telemetry_says_and_a_click_flies_it_there(st
     page = shown.page
     shown.wait("page.isPilot && page.frame?.vehicles.length === 1")
     assert page.locator("#connection").inner_text() == "live"
+    no_set_point = page.locator("figure", has_text="Tracking error").get_by_text("No set-point", exact=True)
+    page.locator("#charts").scroll_into_view_if_needed()
+    no_set_point.wait_for()
     page.get_by_role("button", name="Take off").click()
     client.wait("LOCAL_POSITION_NED", near((0, 0, -5), within=0.2), timeout=30)
     assert page.locator("#answer").inner_text() == "take off: accepted"
+    no_set_point.wait_for(state="hidden")
+    assert page.locator("#charts figure.empty").count() == 0
+    # Vehicles introduce themselves to whoever gives the first command, too, but the page has heard it.
+    assert page.locator("#texts li", has_text="simulated quadrotor").count() == 1
 
     page.get_by_role("button", name="Follow").click()  # the view stands still from now on
     goal = (4.0, -3.0, -5.0)

@@ -9,14 +9,19 @@ const PERIOD_MS = 30;
 const UNSEEN_MS = 2000;
 const HEIGHT_REM = 12;
 
-/** Title, unit of the axis, its least height, and the series: column of the history, label, colour, dashed or not. Counts have no unit. */
+/** What stands in place of a plot without values. */
+const NO_DATA = "No data";
+/**
+ * Title, unit of the axis, its least height, the series (column of the history, label, colour, dashed or not), and what to say when there are no
+ * values if not that. Counts have no unit.
+ */
 const PLOTS = [
   ["Position", "m", 1, [
     ["north", "north", "--one"], ["east", "east", "--two"], ["up", "up", "--three"],
     ["northTarget", "north set-point", "--one", true], ["eastTarget", "east set-point", "--two", true],
     ["upTarget", "up set-point", "--three", true],
   ]],
-  ["Tracking error", "m", 0.02, [["northError", "north", "--one"], ["eastError", "east", "--two"], ["upError", "up", "--three"]]],
+  ["Tracking error", "m", 0.02, [["northError", "north", "--one"], ["eastError", "east", "--two"], ["upError", "up", "--three"]], "No set-point"],
   ["Thrust", "N", 1, [["thrust", "thrust", "--one"], ["strongest", "strongest", "--soft", true]]],
   ["Active limits of the controllers", "", null, [
     ["altitudeActive", "altitude", "--one"], ["positionActive", "position", "--two"], ["attitudeActive", "attitude", "--three"],
@@ -60,11 +65,13 @@ export class Plots {
     const colour = (name) => style.getPropertyValue(name).trim();
     this.seen.disconnect();
     this.parent.replaceChildren();
-    this.plots = PLOTS.map(([title, unit, least, series]) => {
+    this.plots = PLOTS.map(([title, unit, least, series, nothing]) => {
       const figure = document.createElement("figure");
       const caption = document.createElement("figcaption");
       caption.textContent = unit ? `${title}, ${unit}` : title;
-      figure.append(caption);
+      const note = document.createElement("p");
+      Object.assign(note, { className: "notice", textContent: nothing ?? NO_DATA });
+      figure.append(caption, note);
       this.parent.append(figure);
       const axis = {
         font: `${0.75 * rem()}px system-ui, sans-serif`,
@@ -91,6 +98,7 @@ export class Plots {
       canvas.setAttribute("aria-label", `Plot over time, s: ${caption.textContent}`);
       // Its values are those under the mouse.
       figure.querySelector(".u-legend").setAttribute("aria-hidden", "true");
+      figure.classList.add("empty");
       return { plot, figure, columns, isSeen: false, isOld: true, drawn: -Infinity };
     });
     for (const { figure } of this.plots) this.seen.observe(figure);
@@ -121,7 +129,9 @@ export class Plots {
     Object.assign(each, { isOld: false, drawn: now });
     // The next search begins behind it.
     this.plots.push(...this.plots.splice(0, this.plots.indexOf(each) + 1));
-    each.plot.setData([this.history.time, ...each.columns.map((column) => this.history.columns[column])]);
+    const columns = each.columns.map((column) => this.history.columns[column]);
+    each.figure.classList.toggle("empty", columns.every((values) => values.every((value) => value === null)));
+    each.plot.setData([this.history.time, ...columns]);
     if (old.length > 1) this.next.ask();
   }
 }
