@@ -64,6 +64,7 @@ pub static ASSETS: &[Asset] = &[
     file!("page/labels.js", SCRIPT),
     file!("page/redraw.js", SCRIPT),
     file!("page/rarely.js", SCRIPT),
+    file!("page/ground.js", SCRIPT),
     file!("page/surroundings.js", SCRIPT),
     file!("page/horizon.js", SCRIPT),
     file!("page/plots.js", SCRIPT),

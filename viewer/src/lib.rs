@@ -35,7 +35,7 @@ pub use news::{News, Text, VehicleNews};
 pub use order::{Action, Order, Reply};
 pub use recording::Recording;
 pub use replayer::Replayer;
-pub use scene::{FenceScene, ObstacleScene, Scene, VehicleScene, Waypoint, ZoneScene};
+pub use scene::{FenceScene, GroundScene, ObstacleScene, Scene, VehicleScene, Waypoint, ZoneScene};
 pub use server::{Past, Viewer, ViewerError};
 pub use standalone::standalone;
 pub use token::Token;

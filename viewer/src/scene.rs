@@ -9,6 +9,8 @@ pub struct Scene {
     pub vehicles: Vec<VehicleScene>,
     /// What stands around.
     pub obstacles: Vec<ObstacleScene>,
+    /// How high the ground is, unless it is flat.
+    pub ground: Option<GroundScene>,
 }
 
 /// What belongs to one vehicle.
@@ -55,6 +57,17 @@ pub struct ZoneScene {
     pub inclusion: bool,
     /// Corners, north and east, m; circles have many.
     pub corners_m: Vec<[f64; 2]>,
+}
+
+/// Heights of the ground at the corners of squares. Beyond them it goes on as high as at their edge.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GroundScene {
+    /// North and east of the first height, m: the south-west corner.
+    pub corner_m: [f64; 2],
+    /// Side of the squares, m.
+    pub step_m: f64,
+    /// Rows from south to north, each from west to east and equally long: heights, m.
+    pub rows_m: Vec<Vec<f64>>,
 }
 
 /// Something that stands.

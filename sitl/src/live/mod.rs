@@ -9,6 +9,7 @@
 //! messages of a ground station.
 
 mod film;
+mod ground;
 mod news;
 mod open;
 mod page;

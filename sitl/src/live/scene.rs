@@ -10,6 +10,8 @@ use vehicle::plan::{PlanKind, compile};
 use vehicle::surroundings::{Obstacle, Shape as ObstacleShape};
 use viewer::{FenceScene, ObstacleScene, Scene, VehicleScene, Waypoint, ZoneScene};
 
+use super::ground::ground;
+
 /// Corners of a circle.
 const CORNERS: usize = 48;
 
@@ -71,10 +73,11 @@ impl Outline {
 /// What stands still around vehicles.
 pub fn scene<'a>(autopilots: impl Iterator<Item = &'a Autopilot> + Clone) -> Scene {
     let first = autopilots.clone().next();
-    let obstacles = first.map(|autopilot| autopilot.settings().surroundings.obstacles.as_slice());
+    let surroundings = first.map(|autopilot| &autopilot.settings().surroundings);
     Scene {
         vehicles: autopilots.map(of_one).collect(),
-        obstacles: obstacles.unwrap_or_default().iter().map(obstacle).collect(),
+        obstacles: surroundings.map(|all| all.obstacles.iter().map(obstacle).collect()).unwrap_or_default(),
+        ground: surroundings.and_then(|all| ground(&all.terrain)),
     }
 }
 

@@ -240,6 +240,29 @@ def test_missions_and_fences_are_drawn_where_they_are(start, look, tmp_path):
     assert math.dist((box["x"], box["y"]), expected) < 30, (box, expected, stage)
 
 
+def test_hills_are_drawn_as_high_as_they_are(start, connect, look, tmp_path):
+    """The oracle is the hill's formula: half a wave of a cosine from its level top to its foot."""
+    world = tmp_path / "world.toml"
+    world.write_text("[[hill]]\ncenter = [20.0, 0.0]\nradius = 15.0\ntop = 3.0\nheight = 6.0\n")
+    vehicle = start("--view", "127.0.0.1:0", "--world", str(world))
+    shown = look(vehicle.ready["view"])
+    shown.wait("page.scene.ground && page.frame")
+    surface = "view.surroundings.group.children.flatMap(({ children }) => children).find(({ isMesh }) => isMesh)"
+    corners = np.array(shown.value(f"[...{surface}.geometry.attributes.position.array]")).reshape(-1, 3)
+    east, up, south = corners.T
+    away = np.clip((np.hypot(-south - 20, east) - 3) / 12, 0, 1)
+    assert len(corners) < 10_300 and up == pytest.approx(3 * (1 + np.cos(np.pi * away)), abs=0.0051)
+    assert min(east) < -20 and max(east) > 20 and min(-south) < 0 and max(-south) > 40
+    assert shown.page.locator("#scale").inner_text() == "Squares of 1 m"
+    # A vehicle over the hill has its shadow on it.
+    client = connect(vehicle)
+    client.take_off()
+    client.go(lambda: client.position((0, 0, -10)))
+    for goal in ((0, 0, -10), (20, 0, -10)):
+        client.stream(lambda: client.position(goal), near(goal, within=0.2))
+    shown.wait("Math.abs(view.crafts.drops.geometry.attributes.position.getY(1) - 6) < 0.05")
+
+
 def test_a_table_is_replayed(start, look, tmp_path):
     table = tmp_path / "result.csv"
     times = np.arange(0, 10.001, 0.1)

@@ -71,6 +71,20 @@ impl Terrain {
         self.relief.is_none()
     }
 
+    /// South-west and north-east corner of what heights are given for, north and east, m: the grid and the feet of the hills. `None`
+    /// for flat ground.
+    pub fn extent_m(&self) -> Option<[[f64; 2]; 2]> {
+        let relief = self.relief.as_ref()?;
+        let grid = relief.grid.as_ref().map(HeightGrid::extent_m);
+        let hills = relief.hills.iter().map(Hill::extent_m);
+        grid.into_iter().chain(hills).reduce(|[low, high], [other_low, other_high]| {
+            [
+                [0, 1].map(|axis| low[axis].min(other_low[axis])),
+                [0, 1].map(|axis| high[axis].max(other_high[axis])),
+            ]
+        })
+    }
+
     /// z of the ground, NED, m, at a place north and east of the origin, m.
     #[inline]
     pub fn z_m(&self, [north_m, east_m]: [f64; 2]) -> f64 {
@@ -126,6 +140,12 @@ impl Relief {
 }
 
 impl HeightGrid {
+    fn extent_m(&self) -> [[f64; 2]; 2] {
+        let sides = [self.rows_m.len(), self.rows_m.first().map_or(0, Vec::len)];
+        let end_m = |axis: usize| self.corner_m[axis] + self.spacing_m * sides[axis].saturating_sub(1) as f64;
+        [self.corner_m, [end_m(0), end_m(1)]]
+    }
+
     fn height_m(&self, place_m: [f64; 2]) -> f64 {
         let last_row = self.rows_m.len().saturating_sub(1);
         let last_column = self.rows_m.first().map_or(0, |row| row.len().saturating_sub(1));
@@ -147,6 +167,13 @@ impl HeightGrid {
 }
 
 impl Hill {
+    fn extent_m(&self) -> [[f64; 2]; 2] {
+        [
+            self.centre_m.map(|middle_m| middle_m - self.radius_m),
+            self.centre_m.map(|middle_m| middle_m + self.radius_m),
+        ]
+    }
+
     fn height_m(&self, [north_m, east_m]: [f64; 2]) -> f64 {
         let off_m = hypot(north_m - self.centre_m[0], east_m - self.centre_m[1]);
         if off_m >= self.radius_m {
@@ -192,6 +219,16 @@ mod tests {
         for (off_m, height_m) in [(0.0, 8.0), (10.0, 8.0), (20.0, 4.0), (30.0, 0.0), (31.0, 0.0)] {
             assert!((terrain.z_m([10.0 + off_m, 20.0]) + height_m).abs() < 1e-12, "{off_m} m");
         }
+    }
+
+    #[test]
+    fn heights_are_given_for_the_grid_and_up_to_the_feet_of_the_hills() {
+        assert_eq!(Terrain::default().extent_m(), None);
+        assert_eq!(slope().extent_m(), Some([[-5.0, -10.0], [5.0, 10.0]]));
+        let hill = Hill { centre_m: [10.0, 20.0], radius_m: 30.0, top_m: 10.0, height_m: 8.0 };
+        let grid = HeightGrid { corner_m: [-30.0, 0.0], spacing_m: 10.0, rows_m: vec![vec![1.0; 8]; 2] };
+        let both = Terrain::new(Relief { grid: Some(grid), hills: vec![hill] });
+        assert_eq!(both.extent_m(), Some([[-30.0, -10.0], [40.0, 70.0]]));
     }
 
     /// Over a plane z = −7.5 − 0.1 n − 0.2 e a ray from (0, 0, −17.5) along d meets it after 10/(d_z + 0.1 d_n + 0.2 d_e).

@@ -6,12 +6,15 @@ import {
 } from "../three/three.module.min.js";
 import { bodyOf, discsOf, reachOf, USUAL_ROTORS } from "./airframe.js";
 import { attitude, place } from "./axes.js";
+import { heightAt } from "./ground.js";
 import { Trail } from "./trail.js";
 
 /** A frame of the stream has no more. */
 const MOST = 255;
 /** Least size on the screen, as a share of the distance to the camera. */
 const LEAST_SIZE = 0.045;
+/** Shadows lie so far above the ground, m: they do not flicker. */
+const SHADOW_LIFT = 0.03;
 const UPRIGHT = new Quaternion();
 
 /** Many of one shape, as many as are set. */
@@ -53,8 +56,9 @@ export class Crafts {
     scene.add(this.targets, this.shadows, this.drops);
   }
 
-  /** Takes the shapes of vehicles in. */
-  describe(vehicles) {
+  /** Takes the shapes of vehicles in, and what their shadows fall on. */
+  describe({ vehicles, ground }) {
+    this.ground = ground;
     this.rotors = new Map(vehicles.map(({ id, rotors_m: rotors }) => [id, rotors]));
     this.forgetShapes();
   }
@@ -119,14 +123,15 @@ export class Crafts {
     const size = Math.max(1, (LEAST_SIZE * camera.position.distanceTo(at)) / span);
     put(body, at, turned, size);
     put(discs, at, turned, size);
-    put(this.shadows, new Vector3(at.x, 0.01, at.z), UPRIGHT, size * span);
+    const ground = heightAt(this.ground, ...state.position);
+    put(this.shadows, new Vector3(at.x, ground + SHADOW_LIFT, at.z), UPRIGHT, size * span);
     if (state.tracks && state.setpoint.every(Number.isFinite)) {
       const target = place(state.setpoint);
       put(this.targets, target, UPRIGHT, Math.max(0.3, 0.022 * camera.position.distanceTo(target)));
     }
     const { position, lineDistance } = this.drops.geometry.attributes;
-    position.setXYZ(2 * index, at.x, at.y, at.z).setXYZ(2 * index + 1, at.x, 0, at.z);
-    lineDistance.setX(2 * index, 0).setX(2 * index + 1, Math.abs(at.y));
+    position.setXYZ(2 * index, at.x, at.y, at.z).setXYZ(2 * index + 1, at.x, ground, at.z);
+    lineDistance.setX(2 * index, 0).setX(2 * index + 1, Math.abs(at.y - ground));
   }
 
   trailOf(id) {

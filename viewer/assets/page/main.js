@@ -103,7 +103,7 @@ function draw(now, waited) {
   controls.showSpeed(frame.speed);
   view?.draw(frame.vehicles, (id) => historyOf(id).places, chosen);
   view?.pace(waited, now);
-  if (view) write("scale", `Squares of ${view.grid.step} m`);
+  if (view) write("scale", `Squares of ${view.step} m`);
   const state = chosenState();
   if (!state) return goesOn;
   horizon.draw(state.quaternion);

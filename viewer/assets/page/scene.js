@@ -142,8 +142,14 @@ export class View {
   describe(description) {
     this.description = description;
     this.surroundings.build(description, this.colours);
-    this.crafts.describe(description.vehicles);
+    this.crafts.describe(description);
+    this.grid.visible = !description.ground;
     this.on.change();
+  }
+
+  /** Between two lines on the ground, m. */
+  get step() {
+    return this.description.ground?.step_m ?? this.grid.step;
   }
 
   /** Turns the view so that everything is in it. */

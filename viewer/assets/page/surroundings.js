@@ -5,6 +5,7 @@ import {
   MeshBasicMaterial, MeshLambertMaterial, RingGeometry, Shape, SphereGeometry, Vector3,
 } from "../three/three.module.min.js";
 import { place } from "./axes.js";
+import { surface } from "./ground.js";
 
 const WALL = 30;
 const CORNERS = 72;
@@ -38,6 +39,7 @@ export class Surroundings {
       this.group.add(home);
     }
     for (const obstacle of description.obstacles) this.obstacle(obstacle, colours);
+    if (description.ground) this.group.add(surface(description.ground, colours));
   }
 
   clear() {
