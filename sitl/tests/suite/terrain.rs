@@ -2,6 +2,7 @@
 
 use crate::common;
 use crate::common::Bench;
+use crate::common::failsafe_bench::set;
 use crate::common::plan_client::{result, upload};
 use autopilot::codec::Message;
 use mavlink::MessageData;
@@ -169,4 +170,69 @@ fn waypoints_above_the_terrain_are_above_the_ground_there() {
     bench.fly_until("the end", 10.0, |bench| {
         bench.autopilot.vehicle().mission_status().state == MissionState::Complete
     });
+}
+
+/// A ridge 20 m high, 120 m wide at its foot, between two places on level ground.
+const RIDGE: Hill = Hill { centre_m: [80.0, 0.0], radius_m: 60.0, top_m: 0.0, height_m: 20.0 };
+
+/// Height above the ground of that hill, from its formula, m.
+fn above_ridge_m([north_m, east_m, z_m]: [f64; 3]) -> f64 {
+    let off = f64::min((north_m - 80.0).hypot(east_m) / 60.0, 1.0);
+    -z_m - 10.0 * (1.0 + (std::f64::consts::PI * off).cos())
+}
+
+/// Two legs over a hill, 10 and then 10 to 15 m above the ground, through the corner between them without a stop: the height is that
+/// all the way, while a straight way would scrape the top at 10 m below it.
+#[test]
+fn a_way_above_the_terrain_follows_the_ground() {
+    let mut bench = Bench::hovering_with(&settings(Identity::ArduPilot, RIDGE));
+    let waypoint = |bench: &Bench, place_m, above_m| {
+        global(bench, command::NAV_WAYPOINT, frame::GLOBAL_TERRAIN, place_m, above_m)
+    };
+    let items = [
+        global(&bench, command::NAV_WAYPOINT, frame::GLOBAL, [0.0, 0.0], 0.0),
+        waypoint(&bench, [0.0, 0.0], 10.0),
+        waypoint(&bench, [110.0, 0.0], 10.0),
+        waypoint(&bench, [110.0, 80.0], 15.0),
+    ];
+    assert_eq!(result(&upload(&mut bench, PlanKind::Mission, &items)), Some(0));
+    assert_eq!(bench.set_mode(Mode::Mission), 0);
+    bench.fly_until("it is above the first place", 30.0, |bench| bench.is_near([0.0, 0.0, -10.0]));
+    let (mut slowest_m_s, mut highest_m) = (f64::INFINITY, 0.0_f64);
+    for _ in 0..1200 {
+        let [north_m, east_m, z_m] = bench.position();
+        let expected_m = 10.0 + if north_m > 108.0 { 5.0 * (east_m / 80.0).clamp(0.0, 1.0) } else { 0.0 };
+        let above_m = above_ridge_m([north_m, east_m, z_m]);
+        assert!((above_m - expected_m).abs() < 0.4, "{above_m} m at {north_m} {east_m}");
+        if (20.0..150.0).contains(&(north_m + east_m)) {
+            slowest_m_s = slowest_m_s.min(bench.autopilot.vehicle().truth().velocity_m_s.norm());
+        }
+        highest_m = highest_m.max(-z_m);
+        bench.fly(0.1);
+    }
+    assert!((highest_m - 30.0).abs() < 0.3, "over the top: {highest_m}");
+    assert!(slowest_m_s > 0.5, "it does not stop: {slowest_m_s}");
+    assert!(bench.is_near([110.0, 80.0, -15.0]), "{:?}", bench.position());
+    assert_eq!(bench.autopilot.vehicle().mission_status().state, MissionState::Complete);
+}
+
+/// RTL_ALT_TYPE = 1: home over a hill at RTL_ALT, 15 m, above the ground, and down there.
+#[test]
+fn a_return_follows_the_ground_if_it_is_to() {
+    let mut bench = Bench::hovering_with(&settings(Identity::ArduPilot, RIDGE));
+    set(&mut bench, "RTL_ALT_TYPE", 1.0);
+    let place_m = Vector3::new(150.0, 0.0, 0.0);
+    fly_to(&mut bench, MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT, &place_m, 40.0);
+    bench.fly(20.0);
+    fly_to(&mut bench, MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT, &place_m, 5.0);
+    assert!(bench.is_near([150.0, 0.0, -5.0]), "{:?}", bench.position());
+    assert_eq!(bench.set_mode(Mode::Return), 0);
+    bench.fly_until("it has climbed", 20.0, |bench| bench.position()[0] < 149.9);
+    bench.fly_until("it is above home", 120.0, |bench| {
+        let position_m = bench.position();
+        let above_m = above_ridge_m(position_m);
+        assert!((above_m - 15.0).abs() < 0.6, "{above_m} m at {position_m:?}");
+        position_m[0].abs() < 0.1
+    });
+    bench.fly_until("it has landed", 60.0, |bench| !bench.autopilot.vehicle().is_armed());
 }

@@ -99,7 +99,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("AVOID_BEHAVE", 0, 0..=1, "", "Slide along obstacles or stop; here sticks slide and Guided stops"),
         ("MIS_OPTIONS", 0, 0..=15, "", "Options of missions; the mission is kept over a boot"),
         ("RTL_OPTIONS", 0, 0..=4, "", "Options of a return; its heading is its own"),
-        ("RTL_ALT_TYPE", 0, 0..=1, "", "Height of a return above home or the terrain; here above home"),
         ("FENCE_ALT_MAX_TP", 1, 0..=3, "", "What FENCE_ALT_MAX is above; here home"),
         ("FENCE_ALT_MIN_TP", 1, 0..=3, "", "What FENCE_ALT_MIN is above; here home"),
         ("RALLY_INCL_HOME", 1, 0..=1, "", "Home counts as a rally point"),

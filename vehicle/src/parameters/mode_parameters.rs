@@ -72,6 +72,7 @@ pub static PX4_MODE_PARAMETERS: &[ConductParameter] = &[
 #[rustfmt::skip] // As above.
 pub static ARDUPILOT_MODE_PARAMETERS: &[ConductParameter] = &[
     real!("RTL_ALT_FINAL_M", Some(("RTL_ALT_FINAL", 100.0)), 0.0..=1000.0, return_home.final_height_m, "m", "Height above home at which a return ends; 0 lands").also(&[("RTL_ALT_FINAL_M", 1.0)]),
+    switch!("RTL_ALT_TYPE", return_home.above_ground, "What the height of a return counts from", ["Home", "The ground, which its way follows"]),
     switch!("MIS_RESTART", mission_restarts, "What a mission does that was left and is entered again", ["Resume", "Restart"]),
     real!("RTL_LOIT_TIME", None, 0.0..=60_000.0, return_home.wait_s, 1000.0, "ms", "Time that a return waits above home before it descends"),
     real!("RTL_SPEED_MS", Some(("RTL_SPEED", 100.0)), 0.0..=50.0, return_home.speed_m_s, "m/s", "Speed of a return; 0 is that of missions").also(&[("RTL_SPEED_MS", 1.0)]),

@@ -7,6 +7,8 @@ pub enum Altitude {
     AboveHome(f64),
     /// Fixed in the local frame: z, positive down, m.
     Down(f64),
+    /// The same, given above the ground there: the way there follows the ground.
+    AboveGround(f64),
 }
 
 impl Altitude {
@@ -14,7 +16,7 @@ impl Altitude {
     pub fn down_m(self, home_z_m: f64) -> f64 {
         match self {
             Self::AboveHome(height_m) => home_z_m - height_m,
-            Self::Down(z_m) => z_m,
+            Self::Down(z_m) | Self::AboveGround(z_m) => z_m,
         }
     }
 }

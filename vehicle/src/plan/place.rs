@@ -16,4 +16,9 @@ impl Place {
     pub fn down_m(&self, home_z_m: f64) -> Option<f64> {
         self.altitude.map(|altitude| altitude.down_m(home_z_m))
     }
+
+    /// Whether the way there follows the ground.
+    pub fn is_above_ground(&self) -> bool {
+        matches!(self.altitude, Some(Altitude::AboveGround(_)))
+    }
 }

@@ -84,7 +84,7 @@ impl Site {
         match frame {
             frame::GLOBAL_RELATIVE | frame::GLOBAL_RELATIVE_INT => Altitude::AboveHome(altitude_m),
             frame::GLOBAL_TERRAIN | frame::GLOBAL_TERRAIN_INT => {
-                Altitude::Down(self.terrain.z_m(place_m) - altitude_m)
+                Altitude::AboveGround(self.terrain.z_m(place_m) - altitude_m)
             }
             _ => Altitude::Down(self.frame.origin().altitude_m - altitude_m),
         }

@@ -8,18 +8,27 @@ const SHALLOWEST: f64 = 0.5;
 
 /// Height of the way to a place at a horizontal distance, z, m: never lower than the vehicle is, and not above the fence.
 pub(super) fn way_z_m(situation: &Situation, distance_m: f64) -> f64 {
-    let home_z_m = situation.home.position_m.z;
-    let here_m = home_z_m - situation.outputs.position_m.z;
+    // What its height counts from.
+    let base_z_m =
+        if follows_ground(situation) { situation.ground_z_m() } else { situation.home.position_m.z };
+    let here_m = base_z_m - situation.outputs.position_m.z;
     let wanted_m = if situation.identity.is_ardupilot() {
         ardupilot_height_m(situation, here_m, distance_m)
     } else {
         px4_height_m(situation, distance_m)
     };
-    let mut z_m = situation.outputs.position_m.z.min(home_z_m - wanted_m);
+    let mut z_m = situation.outputs.position_m.z.min(base_z_m - wanted_m);
     if let Some(ceiling_z_m) = situation.fence_ceiling_z_m() {
         z_m = z_m.max(ceiling_z_m);
     }
     z_m
+}
+
+/// Whether the way follows the ground.
+pub(super) fn follows_ground(situation: &Situation) -> bool {
+    situation.identity.is_ardupilot()
+        && situation.conduct.return_home.above_ground
+        && !situation.terrain.is_flat()
 }
 
 /// At least a climb, and near home not above a cone that widens with the height.

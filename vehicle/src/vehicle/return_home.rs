@@ -12,15 +12,18 @@ use std::collections::VecDeque;
 use nalgebra::Vector3;
 
 use super::descent::descend;
+use super::ground_way::{GroundWay, PLACES_AHEAD, headed};
 use super::heading_policy::{HeadingPolicy, Purpose};
 use super::motion::wrapped;
 use super::notice::Severity;
 use super::proposal::Proposal;
-use super::return_height::way_z_m;
+use super::return_height::{follows_ground, way_z_m};
 use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::situation::Situation;
 use super::speeds::SpeedChange;
+use super::spline::{Bend, Spline};
 use super::steering::Steering;
+use super::tick::TICK_S;
 use crate::fence::{Progress, RouteSearch};
 
 /// Part of the way home.
@@ -62,6 +65,8 @@ pub struct Return {
     way_m: VecDeque<[f64; 2]>,
     /// Height of the way, z, m.
     way_z_m: f64,
+    /// The part of it that follows the ground, and the piece of its curve.
+    ground_way: Option<(GroundWay, Spline)>,
 }
 
 impl Return {
@@ -97,6 +102,7 @@ impl Return {
                 self.phase = Phase::Travel;
                 self.travel(situation, proposal);
             }
+            Phase::Travel if self.ground_way.is_some() => self.follow_ground(situation, proposal),
             Phase::Travel if reached() && self.way_m.len() > 1 => {
                 self.way_m.pop_front();
                 self.travel(situation, proposal);
@@ -154,10 +160,39 @@ impl Return {
         self.phase == Phase::Descend
     }
 
-    fn travel(&self, situation: &Situation, proposal: &mut Proposal) {
-        if let Some(next) = self.way_m.front() {
-            self.go_above(*next, situation, proposal);
-            turn_on_the_way(situation, proposal);
+    fn travel(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let Some(next) = self.way_m.front().copied() else { return };
+        if follows_ground(situation) {
+            let here_m = situation.outputs.setpoint.position_m;
+            let above_m = situation.ground_z_m() - here_m.z;
+            let way =
+                GroundWay::new(here_m, Vector3::new(next[0], next[1], situation.terrain.z_m(next) - above_m));
+            let spline = ground_piece(&way, None, situation);
+            self.ground_way = spline.map(|spline| (way, spline));
+            if self.ground_way.is_some() {
+                return;
+            }
+        }
+        self.go_above(next, situation, proposal);
+        turn_on_the_way(situation, proposal);
+    }
+
+    /// One tick along the ground; the last piece ends at rest, at the goal of the shaper.
+    fn follow_ground(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let Some((way, mut spline)) = self.ground_way.take() else { return };
+        if let Some(set_point) = spline.step(situation.limits(), TICK_S) {
+            let way_rad = way.bearing_rad().unwrap_or(situation.outputs.setpoint.yaw_rad);
+            proposal.follow(situation, &headed(set_point, Purpose::Return, way_rad, situation));
+            self.ground_way = Some((way, spline));
+            return;
+        }
+        self.ground_way = ground_piece(&way, Some(&spline), situation).map(|next| (way, next));
+        match self.ground_way {
+            Some(_) => self.follow_ground(situation, proposal),
+            None => {
+                self.way_z_m = way.end_m().z;
+                self.go_above(way.end_m().xy().into(), situation, proposal);
+            }
         }
     }
 
@@ -211,6 +246,17 @@ impl Return {
         self.phase = Phase::Descend;
         proposal.say(Severity::Info, "Above the return point: landing");
     }
+}
+
+/// The next piece of a way that follows the ground: the first one from rest, the others in full motion. `None` at its end.
+fn ground_piece(way: &GroundWay, before: Option<&Spline>, situation: &Situation) -> Option<Spline> {
+    let onward = match before {
+        Some(before) => Some(before.onward(situation.time_us)?),
+        None => None,
+    };
+    let here_m = onward.map_or(situation.outputs.setpoint.position_m, |onward| onward.position_m);
+    let places_m: Vec<_> = way.places_m(&here_m, situation.terrain).take(PLACES_AHEAD).collect();
+    Spline::new(here_m, onward, &places_m, Bend::Close, situation.limits())
 }
 
 /// To a place and a height, z, m; the heading goes on.

@@ -35,6 +35,8 @@ pub struct ReturnSettings {
     pub goal: ReturnGoal,
     /// Height above the place at which it waits before it lands, m (PX4).
     pub wait_height_m: f64,
+    /// Whether its height is above the ground instead, which its way follows then (ArduPilot).
+    pub above_ground: bool,
     /// How long it waits above the place, s; negative: it stays there (PX4).
     pub wait_s: f64,
     /// Height above home at which it stays in the end, m; 0: it lands (ArduPilot).

@@ -11,7 +11,6 @@ use super::super::situation::Situation;
 use super::super::speeds::SpeedChange;
 use super::super::tick::TICK_S;
 use super::super::turning::Turning;
-use super::leg::Leg;
 use crate::equipment::Operation;
 use crate::plan::step::{Condition, Do, Step, Turn};
 use crate::plan::{Place, Program};
@@ -53,14 +52,14 @@ impl Actions {
     pub fn act(
         &mut self,
         program: &Program,
-        leg: Option<&Leg>,
+        way_m: Option<[Vector3<f64>; 2]>,
         situation: &Situation,
         proposal: &mut Proposal,
     ) -> Vec<usize> {
         let mut done = Vec::new();
         while let Some(index) = self.steps.front().copied() {
             match self.waiting {
-                Some(waiting) if !self.is_over(waiting, leg, situation) => break,
+                Some(waiting) if !self.is_over(waiting, way_m, situation) => break,
                 Some(_) => self.waiting = None,
                 None => match program.step(index) {
                     Some(Step::Condition(condition)) => {
@@ -86,12 +85,12 @@ impl Actions {
         Some(turning.heading())
     }
 
-    fn is_over(&self, waiting: Waiting, leg: Option<&Leg>, situation: &Situation) -> bool {
+    fn is_over(&self, waiting: Waiting, way_m: Option<[Vector3<f64>; 2]>, situation: &Situation) -> bool {
         let outputs = situation.outputs;
         match waiting {
             Waiting::Until(time_us) => situation.time_us >= time_us,
             Waiting::Within(distance_m) => {
-                leg.is_some_and(|leg| (outputs.position_m - leg.to_m).norm() <= distance_m)
+                way_m.is_some_and(|[_, end_m]| (outputs.position_m - end_m).norm() <= distance_m)
             }
             Waiting::Turned => self.turning.is_none_or(|turn| turn.is_done(outputs.attitude_rad.z)),
         }

@@ -4,17 +4,19 @@ use nalgebra::Vector3;
 
 use super::super::descent::descend;
 use super::super::fence_watch::stopping_place_m;
+use super::super::ground_way::{GroundWay, headed};
+use super::super::heading_policy::Purpose;
 use super::super::motion::at_rest;
 use super::super::notice::Severity;
 use super::super::proposal::Proposal;
 use super::super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::super::situation::Situation;
+use super::super::spline::{Bend, Onward, Spline};
 use super::super::steering::{Steering, SteeringKind};
 use super::super::takeoff::is_slow_near;
 use super::super::tick::TICK_S;
 use super::leg::{Guide, Leg, LegProgress, Turn, is_at_rest, is_settling};
 use super::route::Route;
-use super::spline::{Onward, Spline};
 use super::task::{Lowering, Task, TaskProgress, Then};
 use crate::equipment::Operation;
 use crate::plan::Place;
@@ -42,10 +44,11 @@ impl Course {
         self.task.is_some()
     }
 
-    /// The present leg, if one is flown.
-    pub fn leg(&self) -> Option<&Leg> {
+    /// Beginning and end of the way that is flown, NED, m, if one is.
+    pub fn way_m(&self) -> Option<[Vector3<f64>; 2]> {
         match &self.task {
-            Some(Task::Leg(leg, _)) => Some(leg),
+            Some(Task::Leg(leg, _)) => Some([leg.from_m, leg.to_m]),
+            Some(Task::GroundWay(way, ..)) => Some(way.ends_m()),
             _ => None,
         }
     }
@@ -143,6 +146,10 @@ impl Course {
                 Some(task) => task,
                 None => return TaskProgress::Going,
             },
+            step if route.follows_ground(step) => match self.begin_ground_way(step, route, situation) {
+                Some(task) => task,
+                None => return TaskProgress::Going,
+            },
             // A leg begins at rest, after a turn or in full motion.
             _ if self.turn.is_none() && is_settling(&situation.outputs.setpoint) => {
                 return TaskProgress::Going;
@@ -167,8 +174,66 @@ impl Course {
             return None;
         }
         let from_m = onward.map_or(reference.position_m, |onward| onward.position_m);
-        let spline = Spline::new(from_m, onward, &route.curve_m(&from_m), situation.limits())?;
+        let spline = Spline::new(from_m, onward, &route.curve_m(&from_m), Bend::Wide, situation.limits())?;
         Some(Task::Spline(spline, hold_s))
+    }
+
+    /// The next piece of a way that follows the ground: it goes on from the one before it, or begins at rest.
+    fn begin_ground_way(&mut self, step: &Navigate, route: &Route, situation: &Situation) -> Option<Task> {
+        let onward = self.onward.take().filter(|onward| onward.time_us == situation.time_us);
+        let reference = &situation.outputs.setpoint;
+        if onward.is_none() && !is_at_rest(reference) {
+            return None;
+        }
+        let here_m = onward.map_or(reference.position_m, |onward| onward.position_m);
+        let way = GroundWay::new(self.anchor_m, route.leg_end_m(step, &self.anchor_m)?);
+        let places_m = route.ground_places_m(&self.anchor_m, &here_m);
+        let spline = Spline::new(here_m, onward, &places_m, Bend::Close, situation.limits())?;
+        let (then, asked_rad) = self.then(step, &way.end_m(), route);
+        self.turn = None;
+        self.head_for(asked_rad, way.bearing_rad());
+        Some(Task::GroundWay(way, spline, then))
+    }
+
+    fn fly_ground_way(
+        &mut self,
+        way: GroundWay,
+        mut spline: Spline,
+        then: Then,
+        situation: &Situation,
+        proposal: &mut Proposal,
+    ) -> TaskProgress {
+        if let Some(set_point) = spline.step(situation.limits(), TICK_S) {
+            let set_point = if self.heading_is_asked {
+                PositionSetPoint { yaw: YawTarget::Angle(self.heading_rad), ..set_point }
+            } else {
+                headed(set_point, Purpose::Mission, self.heading_rad, situation)
+            };
+            proposal.follow(situation, &set_point);
+            self.task = Some(Task::GroundWay(way, spline, then));
+            return TaskProgress::Going;
+        }
+        self.onward = spline.onward(situation.time_us);
+        if spline.end_m() != way.end_m() {
+            self.task = None;
+            return TaskProgress::Again;
+        }
+        self.anchor_m = way.end_m();
+        if self.onward.is_some() {
+            return TaskProgress::Done(None);
+        }
+        let yaw = if self.heading_is_asked { YawTarget::Angle(self.heading_rad) } else { YawTarget::Hold };
+        let axes = self.anchor_m.data.0[0].map(AxisTarget::Position);
+        proposal.follow(situation, &PositionSetPoint { axes, yaw });
+        self.arrive(then, situation, proposal)
+    }
+
+    /// The heading on a way: what is asked for, else its direction, if it has one.
+    fn head_for(&mut self, asked_rad: Option<f64>, bearing_rad: Option<f64>) {
+        self.heading_is_asked = asked_rad.is_some();
+        if let Some(heading_rad) = asked_rad.or(bearing_rad) {
+            self.heading_rad = heading_rad;
+        }
     }
 
     fn fly_spline(
@@ -291,12 +356,19 @@ impl Course {
     ) -> Task {
         let (from_m, turn) = (self.anchor_m, self.turn.take());
         let leg = route.leg([from_m, end_m], turn, situation);
-        let (then, asked_rad) = match step {
+        let (then, asked_rad) = self.then(step, &end_m, route);
+        self.head_for(asked_rad, leg.bearing_rad());
+        Task::Leg(leg, then)
+    }
+
+    /// What comes at the end of a step's way, and the heading that it asks for on the way, rad.
+    fn then(&self, step: &Navigate, end_m: &Vector3<f64>, route: &Route) -> (Then, Option<f64>) {
+        match step {
             Navigate::Waypoint(waypoint) => (Then::Wait(waypoint.hold_s), waypoint.heading_rad),
             Navigate::Loiter { heading_rad, .. } => (Then::Stay, *heading_rad),
             Navigate::LoiterTime { time_s, .. } => (Then::Wait(*time_s), None),
             Navigate::LoiterTurns(turns) => {
-                let circle = route.circle(turns, &from_m);
+                let circle = route.circle(turns, &self.anchor_m);
                 (Then::Circle(circle), Some(circle.heading_rad()))
             }
             Navigate::Land { heading_rad, .. } => (Then::Land([end_m.x, end_m.y]), *heading_rad),
@@ -308,12 +380,7 @@ impl Course {
             | Navigate::ReturnToLaunch
             | Navigate::Spline { .. }
             | Navigate::Delay(_) => (Then::Wait(0.0), None),
-        };
-        self.heading_is_asked = asked_rad.is_some();
-        if let Some(heading_rad) = asked_rad.or_else(|| leg.bearing_rad()) {
-            self.heading_rad = heading_rad;
         }
-        Task::Leg(leg, then)
     }
 
     fn carry_on(
@@ -350,6 +417,7 @@ impl Course {
                 TaskProgress::Going
             }
             Task::Rise(z_m) if is_slow_near(situation.outputs, z_m) => TaskProgress::Done(None),
+            Task::GroundWay(way, spline, then) => self.fly_ground_way(way, spline, then, situation, proposal),
             Task::Spline(spline, hold_s) => self.fly_spline(spline, hold_s, situation, proposal),
             Task::Lower(lowering) => self.lower(lowering, situation, proposal),
             Task::Climb { .. } | Task::Rise(_) | Task::Wait(_) | Task::Return => TaskProgress::Going,
@@ -379,6 +447,11 @@ impl Course {
             }
             LegProgress::Arrived => self.anchor_m = leg.to_m,
         }
+        self.arrive(then, situation, proposal)
+    }
+
+    /// What comes at the end of a way at which the vehicle rests.
+    fn arrive(&mut self, then: Then, situation: &Situation, proposal: &mut Proposal) -> TaskProgress {
         let (task, progress) = match then {
             Then::Wait(0.0) => return TaskProgress::Done(None),
             Then::Wait(time_s) => (Task::Wait(Some(situation.after_us(time_s))), TaskProgress::Going),

@@ -322,16 +322,6 @@ impl Leg {
         Phase::Joining
     }
 
-    /// Signed distance of a position from the leg's line, horizontally, positive to the right, m.
-    pub fn cross_track_m(&self, position_m: &Vector3<f64>) -> f64 {
-        let way = (self.to_m - self.from_m).xy();
-        let off = (position_m - self.from_m).xy();
-        match way.try_normalize(0.1) {
-            Some(along) => along.x * off.y - along.y * off.x,
-            None => off.norm(),
-        }
-    }
-
     /// Direction of the leg, rad from north, if it has a horizontal one.
     pub fn bearing_rad(&self) -> Option<f64> {
         const SHORTEST_M: f64 = 1.0;

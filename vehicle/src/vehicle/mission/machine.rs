@@ -1,5 +1,7 @@
 //! The mission as a machine: which step is flown, and what becomes of it.
 
+use nalgebra::Vector3;
+
 use super::super::heading_policy::{HeadingPolicy, Purpose};
 use super::super::notice::{Refusal, Severity};
 use super::super::plans::{check_reach, check_way};
@@ -12,7 +14,7 @@ use super::actions::Actions;
 use super::announcement;
 use super::course::Course;
 use super::jumps::Jumps;
-use super::leg::{Leg, Turn};
+use super::leg::Turn;
 use super::route::Route;
 use super::task::{Helm, TaskProgress};
 use crate::mode::Mode;
@@ -109,9 +111,9 @@ impl Mission {
         std::mem::take(&mut self.reached)
     }
 
-    /// The present leg, if one is flown.
-    pub fn leg(&self) -> Option<&Leg> {
-        self.course.leg()
+    /// Beginning and end of the way that is flown, NED, m, if one is.
+    pub fn way_m(&self) -> Option<[Vector3<f64>; 2]> {
+        self.course.way_m()
     }
 
     /// Whether the way home is flown as a part of it.
@@ -379,7 +381,7 @@ impl Mission {
     }
 
     fn act(&mut self, situation: &Situation, proposal: &mut Proposal) {
-        let done = self.actions.act(&self.program, self.course.leg(), situation, proposal);
+        let done = self.actions.act(&self.program, self.course.way_m(), situation, proposal);
         done.into_iter().for_each(|index| self.reach(index));
     }
 
@@ -394,7 +396,7 @@ impl Mission {
                 return;
             }
         };
-        let next_m = self.course.leg().map(|leg| leg.to_m);
+        let next_m = self.course.way_m().map(|[_, end_m]| end_m);
         let heading = match (turned, proposal.region()) {
             (Some(turned), _) => turned,
             (None, Some(region)) => {

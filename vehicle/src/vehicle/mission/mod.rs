@@ -23,7 +23,6 @@ mod leg;
 mod machine;
 mod path;
 mod route;
-mod spline;
 mod status;
 mod task;
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use quadrotor::Limits;
 
+use super::super::ground_way::{GroundWay, PLACES_AHEAD};
 use super::super::proposal::Proposal;
 use super::super::situation::Situation;
 use super::super::trajectory::Blend;
@@ -13,6 +14,7 @@ use super::path::{Corner, Start, Stop, first_corner};
 use crate::fence::Fence;
 use crate::plan::step::{Navigate, Turns, Waypoint};
 use crate::plan::{Place, Program};
+use crate::surroundings::Terrain;
 
 /// Places that are looked ahead.
 const AHEAD: usize = 6;
@@ -30,6 +32,7 @@ pub struct Route<'a> {
     home_z_m: f64,
     limits: &'a Limits,
     fence: Option<Fence<'a>>,
+    terrain: &'a Terrain,
 }
 
 impl<'a> Route<'a> {
@@ -49,6 +52,7 @@ impl<'a> Route<'a> {
             home_z_m: proposal.home().position_m.z,
             limits: situation.limits(),
             fence: situation.fence(),
+            terrain: situation.terrain,
         }
     }
 
@@ -97,6 +101,42 @@ impl<'a> Route<'a> {
                 break;
             }
             next = jumps.next(self.program, index + 1).navigation;
+        }
+        places_m
+    }
+
+    /// Whether the way to a step's place follows the ground.
+    pub fn follows_ground(&self, step: &Navigate) -> bool {
+        let place = match step {
+            Navigate::Waypoint(_)
+            | Navigate::Loiter { .. }
+            | Navigate::LoiterTime { .. }
+            | Navigate::LoiterTurns(_)
+            | Navigate::PlacePayload { .. } => step.place(),
+            _ => None,
+        };
+        !self.terrain.is_flat() && place.is_some_and(Place::is_above_ground)
+    }
+
+    /// Places ahead on ways that follow the ground, up to the first at which the vehicle rests: from `here_m` on the present step's,
+    /// which begins at `from_m`, NED, m.
+    pub fn ground_places_m(&self, from_m: &Vector3<f64>, here_m: &Vector3<f64>) -> Vec<Vector3<f64>> {
+        let mut jumps = self.jumps.clone();
+        let (mut next, mut from_m, mut here_m) = (Some(self.current), *from_m, *here_m);
+        let mut places_m = Vec::new();
+        while let Some(index) = next.filter(|_| places_m.len() < PLACES_AHEAD) {
+            let step = self.program.navigate(index).filter(|step| self.follows_ground(step));
+            let Some((step, end_m)) = step.and_then(|step| Some((step, self.leg_end_m(&step, &from_m)?)))
+            else {
+                break;
+            };
+            let way = GroundWay::new(from_m, end_m);
+            places_m.extend(way.places_m(&here_m, self.terrain).take(PLACES_AHEAD - places_m.len()));
+            if self.rests_at(index, &step) {
+                break;
+            }
+            next = jumps.next(self.program, index + 1).navigation;
+            (from_m, here_m) = (end_m, end_m);
         }
         places_m
     }
@@ -172,8 +212,9 @@ impl<'a> Route<'a> {
             let Some(position_m) = self.leg_end_m(&step, &from_m) else { break };
             let follows = jumps.next(self.program, index + 1).navigation;
             // A curve begins at rest.
-            let curve = follows.and_then(|index| self.program.navigate(index));
-            let curves = matches!(curve, Some(Navigate::Spline { .. }));
+            let curves = follows
+                .and_then(|index| self.program.navigate(index))
+                .is_some_and(|step| matches!(step, Navigate::Spline { .. }) || self.follows_ground(&step));
             let rests = curves || self.rests_at(index, &step);
             stops.push(Stop { position_m, radius_m: self.acceptance_radius_m(&step), rests });
             if rests {

@@ -1,8 +1,9 @@
 //! What is being done for a step.
 
+use super::super::ground_way::GroundWay;
+use super::super::spline::Spline;
 use super::circle_turns::CircleTurns;
 use super::leg::{Leg, Turn};
-use super::spline::Spline;
 
 /// A task.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +30,8 @@ pub enum Task {
     Rise(f64),
     /// Along a curve; then it stays for a time, s.
     Spline(Spline, f64),
+    /// Along a piece of a way that follows the ground; what comes at the end of the way.
+    GroundWay(GroundWay, Spline, Then),
     /// Down to the ground with what the gripper holds, and back.
     Lower(Lowering),
 }

@@ -308,7 +308,16 @@ impl Vehicle {
 
     /// The end of the present leg, NED, m, and the vehicle's distance from the leg's line, positive to the right, m.
     pub fn leg_errors(&self) -> Option<(Vector3<f64>, f64)> {
-        let leg = self.machines.mission.leg()?;
-        Some((leg.to_m, leg.cross_track_m(&self.outputs().position_m)))
+        let way_m = self.machines.mission.way_m()?;
+        Some((way_m[1], cross_track_m(way_m, &self.outputs().position_m)))
+    }
+}
+
+/// Signed distance of a position from a line, horizontally, positive to the right, m.
+fn cross_track_m([from_m, to_m]: [Vector3<f64>; 2], position_m: &Vector3<f64>) -> f64 {
+    let off = (position_m - from_m).xy();
+    match (to_m - from_m).xy().try_normalize(0.1) {
+        Some(along) => along.x * off.y - along.y * off.x,
+        None => off.norm(),
     }
 }

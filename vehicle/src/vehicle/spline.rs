@@ -1,5 +1,5 @@
-//! A curve through places: cubic pieces whose directions agree at the places, as ArduPilot's spline waypoints have them. The direction at
-//! a place is that from the place before it to the one behind it.
+//! A curve through places: cubic pieces whose directions agree at the places. The direction at a place is that from the place before it
+//! to the one behind it.
 //!
 //! ```text
 //!  p(u) = (2u³ − 3u² + 1) p₀ + (u³ − 2u² + u) m₀ + (3u² − 2u³) p₁ + (u³ − u²) m₁,   0 ≤ u ≤ 1
@@ -9,7 +9,16 @@
 use nalgebra::Vector3;
 use quadrotor::Limits;
 
-use super::super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
+use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
+
+/// How long the directions at the places are, of the way from the place before to the one behind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bend {
+    /// As long: a wide curve, as ArduPilot's spline waypoints have it.
+    Wide,
+    /// Half as long (Catmull and Rom): between places that lie densely on a smooth curve it stays on that one.
+    Close,
+}
 
 /// Parts of a piece at which its speed is planned.
 const PARTS: usize = 32;
@@ -136,8 +145,13 @@ impl Spline {
         from_m: Vector3<f64>,
         onward: Option<Onward>,
         ahead_m: &[Vector3<f64>],
+        bend: Bend,
         limits: &Limits,
     ) -> Option<Self> {
+        let share = match bend {
+            Bend::Wide => 1.0,
+            Bend::Close => 0.5,
+        };
         let first_m = *ahead_m.first()?;
         let mut nodes_m = vec![from_m];
         nodes_m.extend(ahead_m);
@@ -146,7 +160,8 @@ impl Spline {
             let [before, here, after] = [index.checked_sub(1), Some(index), Some(index + 1)]
                 .map(|index| nodes_m.get(index?).copied());
             let here = here.unwrap_or(first_m);
-            after.unwrap_or(here) - before.unwrap_or(here)
+            let length = if before.is_some() && after.is_some() { share } else { 1.0 };
+            (after.unwrap_or(here) - before.unwrap_or(here)) * length
         };
         let begins_m = onward.map_or(first_m - from_m, |onward| onward.tangent_m);
         let piece = |index: usize| {
@@ -253,7 +268,7 @@ mod tests {
     use nalgebra::Vector3;
     use quadrotor::Limits;
 
-    use super::{AxisTarget, Onward, Spline};
+    use super::{AxisTarget, Bend, Onward, Spline};
 
     fn motion(spline: &mut Spline, limits: &Limits) -> Option<[Vector3<f64>; 3]> {
         let set_point = spline.step(limits, 0.001)?;
@@ -276,7 +291,7 @@ mod tests {
         let (mut onward, mut last) = (None, None::<[Vector3<f64>; 3]>);
         let mut fastest: f64 = 0.0;
         for index in 0..places.len() {
-            let mut spline = Spline::new(from_m, onward, &places[index..], &limits).unwrap();
+            let mut spline = Spline::new(from_m, onward, &places[index..], Bend::Wide, &limits).unwrap();
             while let Some([position_m, velocity_m_s, acceleration_m_s2]) = motion(&mut spline, &limits) {
                 if let Some([before_m, before_m_s, _]) = last {
                     let moved_m = position_m - before_m;
@@ -309,7 +324,7 @@ mod tests {
     fn nowhere_is_no_curve_and_here_is_a_short_one() {
         let limits = Limits::default();
         let here_m = Vector3::new(1.0, 2.0, -3.0);
-        assert_eq!(Spline::new(here_m, None, &[], &limits), None);
+        assert_eq!(Spline::new(here_m, None, &[], Bend::Wide, &limits), None);
         let onward = Some(Onward {
             time_us: 0,
             position_m: here_m,
@@ -318,7 +333,7 @@ mod tests {
             past_m: 0.0,
         });
         for onward in [None, onward] {
-            let mut spline = Spline::new(here_m, onward, &[here_m], &limits).unwrap();
+            let mut spline = Spline::new(here_m, onward, &[here_m], Bend::Wide, &limits).unwrap();
             let ends = (0..10_000).any(|_| motion(&mut spline, &limits).is_none());
             assert!(ends, "{spline:?}");
         }
