@@ -35,6 +35,9 @@ pub const VERTICAL_DILUTION: f64 = 1.1;
 /// A receiver whose last fix is older has none, µs.
 const FRESH_US: u64 = 1_000_000;
 
+/// A fix whose receiver takes itself to be further off than this, m, is not used. Assumed, several times what is usual.
+const WORST_M: f64 = 20.0;
+
 /// What the receiver says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GpsFix {
@@ -66,6 +69,11 @@ impl GpsFix {
             velocity_accuracy_m_s: 0.0,
             satellites: SATELLITES,
         }
+    }
+
+    /// Whether the receiver takes itself to be near enough for its fix to be used.
+    pub fn is_accurate(&self) -> bool {
+        self.horizontal_accuracy_m <= WORST_M
     }
 
     /// Whether it still tells where the vehicle is.

@@ -23,6 +23,7 @@ mod estimator;
 pub mod gps;
 mod ideal;
 pub mod inertial;
+mod jamming;
 mod lockout;
 pub mod magnetometer;
 mod navigation;

@@ -180,13 +180,13 @@ impl Navigation {
             self.readings.magnetometer = Some(reading);
         }
         let fault = faults.sensor(Sensor::Gps);
-        let fix = self.gps.sample(motion).map(|fix| match errors {
+        let fix = self.gps.sample(motion).and_then(|fix| match errors {
             Some(errors) => self.errors.fix(errors, fix, frame.origin().latitude_deg),
-            None => fix,
+            None => Some(fix),
         });
         if let Some(fix) = fix.and_then(|fix| self.defects.gps.tell(fix, fault)) {
             let starts_again = errors.is_none_or(|errors| errors.switches.starts_again);
-            let fitted = self.estimator.gps(&fix, starts_again);
+            let fitted = fix.is_accurate() && self.estimator.gps(&fix, starts_again);
             self.gps_trust.update(fitted, gps::PERIOD_US);
             self.gps_watch.update(time_us, fix.position_m.into());
             self.readings.gps = Some(fix);

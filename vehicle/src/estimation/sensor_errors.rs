@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::gps::GpsFix;
+use super::jamming::Jamming;
 use super::noise::{Channel, Noise};
 use crate::fault::{Fault, Faults, Sensor, SensorFault};
 
@@ -53,6 +54,8 @@ pub struct SensorErrors {
     pub magnetometer_offset_mgauss: Triple,
     /// By how much GPS is off: degrees of latitude, of longitude, and metres upwards.
     pub gps_glitch: Triple,
+    /// Whether GPS is jammed.
+    pub gps_jammed: bool,
     /// Standard deviation of additional noise of GPS heights, m.
     pub gps_noise_m: f64,
     /// Satellites that the receiver says it uses.
@@ -119,6 +122,7 @@ impl Default for SensorErrors {
             magnetometer_noise_mgauss: 0.0,
             magnetometer_offset_mgauss: Triple::default(),
             gps_glitch: Triple::default(),
+            gps_jammed: false,
             gps_noise_m: 0.0,
             gps_satellites: SATELLITES,
         }
@@ -180,12 +184,13 @@ impl SensorSwitches {
 pub struct ErrorSource {
     noise: Noise,
     drift_m: f64,
+    jamming: Jamming,
 }
 
 impl ErrorSource {
     /// Under the seed of the run.
     pub fn new(seed: u64) -> Self {
-        Self { noise: Noise::new(seed, Channel::Error), drift_m: 0.0 }
+        Self { noise: Noise::new(seed, Channel::Error), drift_m: 0.0, jamming: Jamming::default() }
     }
 
     fn spread(&mut self, deviation: f64) -> Vector3<f64> {
@@ -225,13 +230,13 @@ impl ErrorSource {
         field_gauss + errors.magnetometer_offset_mgauss.vector() / 1e3 + noise
     }
 
-    /// A fix, at a latitude in degrees.
-    pub fn fix(&mut self, errors: &SensorErrors, mut fix: GpsFix, latitude_deg: f64) -> GpsFix {
+    /// A fix, at a latitude in degrees. `None` if it is lost.
+    pub fn fix(&mut self, errors: &SensorErrors, mut fix: GpsFix, latitude_deg: f64) -> Option<GpsFix> {
         let Triple { x: latitude, y: longitude, z: up_m } = errors.gps_glitch;
         let noise = if errors.gps_noise_m > 0.0 { self.noise.normal(errors.gps_noise_m) } else { 0.0 };
         let east_m = longitude * DEGREE_M * libm::cos(latitude_deg.to_radians());
         fix.position_m += Vector3::new(latitude * DEGREE_M, east_m, -up_m - noise);
         fix.satellites = errors.gps_satellites;
-        fix
+        if errors.gps_jammed { self.jamming.disturb(fix, &mut self.noise) } else { Some(fix) }
     }
 }

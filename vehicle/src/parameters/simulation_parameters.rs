@@ -100,6 +100,8 @@ pub static SIMULATION_PARAMETERS: &[ConductParameter] = &[
     real!("SIM_GPS1_GLTCH_X", None, -1.0..=1.0, simulated.errors.gps_glitch.x, "deg", "Error of the GPS latitude").also(&[("SIM_GPS_GLITCH_X", 1.0)]),
     real!("SIM_GPS1_GLTCH_Y", None, -1.0..=1.0, simulated.errors.gps_glitch.y, "deg", "Error of the GPS longitude").also(&[("SIM_GPS_GLITCH_Y", 1.0)]),
     real!("SIM_GPS1_GLTCH_Z", None, -10_000.0..=10_000.0, simulated.errors.gps_glitch.z, "m", "Error of the GPS height, upwards").also(&[("SIM_GPS_GLITCH_Z", 1.0)]),
+    switch!("SIM_GPS1_JAM", simulated.errors.gps_jammed, "Whether GPS is jammed: no fix for three seconds, then fixes that come and go and are wrong"),
+    switch!("SIM_GPS_JAM", simulated.errors.gps_jammed, "Whether GPS is jammed; the same as SIM_GPS1_JAM").other(),
     real!("SIM_ACC1_RND", None, 0.0..=100.0, simulated.errors.accelerometer_noise_m_s2, "m/s^2", "Standard deviation of additional noise of the accelerometers").also(&[("SIM_ACC_RND", 1.0)]),
     real!("SIM_ACC1_BIAS_X", None, -20.0..=20.0, simulated.errors.accelerometer_bias_m_s2.x, "m/s^2", "Offset of the accelerometer, forwards"),
     real!("SIM_ACC1_BIAS_Y", None, -20.0..=20.0, simulated.errors.accelerometer_bias_m_s2.y, "m/s^2", "Offset of the accelerometer, to the right"),

@@ -144,3 +144,33 @@ fn a_leap_of_the_receiver_is_taken_over_level() {
     let flown_m = (flier.vehicle().truth().position_m - true_m).xy().norm();
     assert!(leapt_m > 90.0 && flown_m < 10.0 && flier.mode() == LOITER, "{leapt_m} m, {flown_m} m");
 }
+
+/// SIM_GPS1_JAM in Loiter: the place is lost, and the failsafe of the estimator lands the vehicle near where it was.
+#[test]
+fn a_jammed_receiver_is_not_believed() {
+    let mut flier = with_instruments();
+    flier.take_off(10.0, LOITER);
+    flier.fly(5.0);
+    let from_m = flier.vehicle().truth().position_m;
+    flier.set("SIM_GPS1_JAM", 1.0);
+    flier.wait("the failsafe", 40.0, |flier| flier.mode() == LAND);
+    assert!(!knows_place(&mut flier));
+    flier.wait_disarmed(60.0);
+    let drifted_m = (flier.vehicle().truth().position_m - from_m).xy().norm();
+    assert!(drifted_m < 25.0, "{drifted_m} m");
+}
+
+/// Jammed for two seconds: it dead reckons, and knows its place again afterwards.
+#[test]
+fn a_short_jam_is_flown_through() {
+    let mut flier = with_instruments();
+    flier.take_off(10.0, LOITER);
+    flier.fly(5.0);
+    let from_m = flier.vehicle().truth().position_m;
+    flier.set("SIM_GPS1_JAM", 1.0);
+    flier.fly(2.0);
+    flier.set("SIM_GPS1_JAM", 0.0);
+    flier.fly(10.0);
+    let drifted_m = (flier.vehicle().truth().position_m - from_m).xy().norm();
+    assert!(knows_place(&mut flier) && flier.mode() == LOITER && drifted_m < 8.0, "{drifted_m} m");
+}
