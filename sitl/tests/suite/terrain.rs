@@ -236,3 +236,35 @@ fn a_return_follows_the_ground_if_it_is_to() {
     });
     bench.fly_until("it has landed", 60.0, |bench| !bench.autopilot.vehicle().is_armed());
 }
+
+/// CONDITION_YAW on such a way turns the nose to the east, whatever the way's direction.
+#[test]
+fn the_nose_turns_on_a_way_above_the_terrain() {
+    let mut bench = Bench::hovering_with(&settings(Identity::ArduPilot, RIDGE));
+    let waypoint =
+        |bench: &Bench, place_m| global(bench, command::NAV_WAYPOINT, frame::GLOBAL_TERRAIN, place_m, 10.0);
+    let east = MissionItem {
+        frame: frame::MISSION,
+        command: command::CONDITION_YAW,
+        parameters: [90.0, 0.0, 0.0, 0.0],
+        position: [0.0; 3],
+        autocontinue: true,
+    };
+    let items = [
+        global(&bench, command::NAV_WAYPOINT, frame::GLOBAL, [0.0, 0.0], 0.0),
+        waypoint(&bench, [0.0, 0.0]),
+        east,
+        waypoint(&bench, [110.0, 0.0]),
+        waypoint(&bench, [110.0, 80.0]),
+    ];
+    assert_eq!(result(&upload(&mut bench, PlanKind::Mission, &items)), Some(0));
+    assert_eq!(bench.set_mode(Mode::Mission), 0);
+    bench.fly_until("it is over the hill", 60.0, |bench| bench.position()[0] > 60.0);
+    let mut widest_deg = 0.0_f64;
+    while bench.position()[0] < 100.0 {
+        bench.fly(0.1);
+        let off_deg = bench.autopilot.vehicle().truth().attitude_rad.z.to_degrees() - 90.0;
+        widest_deg = widest_deg.max(off_deg.abs());
+    }
+    assert!(widest_deg < 1.0, "{widest_deg} deg off the east");
+}

@@ -53,6 +53,11 @@ impl Course {
         }
     }
 
+    /// Whether a curve is flown.
+    pub fn is_curved(&self) -> bool {
+        matches!(self.task, Some(Task::Spline(..) | Task::GroundWay(..)))
+    }
+
     /// Whether the way home is flown.
     pub fn returns(&self) -> bool {
         matches!(self.task, Some(Task::Return))

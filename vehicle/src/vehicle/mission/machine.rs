@@ -392,7 +392,10 @@ impl Mission {
             Steering::Goal(goal) => goal.yaw_rad,
             Steering::Path(path) => path.goal().yaw_rad,
             _ => {
-                proposal.turn_to_region(situation);
+                match turned.filter(|_| self.course.is_curved()) {
+                    Some(turned) => proposal.turn_on(Some(turned)),
+                    None => proposal.turn_to_region(situation),
+                }
                 return;
             }
         };
