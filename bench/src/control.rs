@@ -10,7 +10,7 @@ use crate::flight::Moment;
 use crate::median::median;
 use crate::peer::PeerLibrary;
 use crate::pick::Pick;
-use crate::program::Program;
+use crate::program::{PosedSample, Program};
 use crate::reference;
 use crate::shipped::{Loops, Shipped};
 use crate::solver::Maker;
@@ -18,6 +18,9 @@ use crate::stopwatch::Stopwatch;
 
 /// Median time of a sample from which a solver is timed once instead of several times.
 const SLOW_NS: f64 = 300_000.0;
+/// The flight that each solver goes through untimed before it is timed: else its first samples would tell what the solver before it has
+/// left in the caches, and peers, which are set up just before, would not have to read their programs into them.
+const FIRST: usize = 0;
 
 /// A loop's model and samples, for solvers of other forms of the same task.
 #[derive(Serialize)]
@@ -254,15 +257,21 @@ fn time_ours<const N: usize, const P: usize, const E: usize>(
     moments: &[Moment<N, P, E>],
     entry: &mut Entry,
 ) {
-    for (moment, best_ns) in moments.iter().zip(&mut entry.times_ns) {
+    let warm = entry.warm;
+    let time = |moment: &Moment<N, P, E>| {
         let sample = std::hint::black_box(moment.sample(&shipped.linear.upper));
         // Copied here, as the memory of a peer is where it was.
-        let mut state = if entry.warm { moment.before } else { moment.forgetful() };
+        let mut state = if warm { moment.before } else { moment.forgetful() };
         // Once, as peers: more in a row would find all of it in the cache.
-        let taken_ns = watch.time(|| {
+        watch.time(|| {
             std::hint::black_box(shipped.law.step(&mut state, &sample));
-        });
-        *best_ns = best_ns.min(taken_ns);
+        })
+    };
+    for moment in moments.iter().take_while(|moment| moment.flight == FIRST) {
+        time(moment);
+    }
+    for (moment, best_ns) in moments.iter().zip(&mut entry.times_ns) {
+        *best_ns = best_ns.min(time(moment));
     }
 }
 
@@ -302,13 +311,19 @@ fn time_peer(watch: &Stopwatch, program: &Program, maker: &dyn Maker, entry: &mu
     let Some(mut solver) = maker.solver(program) else { return };
     let mut z = vec![0.0; program.unknowns];
     let mut last_flight = None;
-    for (sample, best_ns) in program.samples.iter().zip(&mut entry.times_ns) {
-        let warm = entry.warm && last_flight == Some(sample.flight);
+    let warm_starts = entry.warm;
+    let mut time = |sample: &PosedSample, begins: bool| {
+        let warm = warm_starts && !begins && last_flight == Some(sample.flight);
         last_flight = Some(sample.flight);
-        let taken_ns = watch.time(|| {
+        watch.time(|| {
             solver.solve(std::hint::black_box(sample), warm, &mut z);
-        });
-        *best_ns = best_ns.min(taken_ns);
+        })
+    };
+    for (number, sample) in program.samples.iter().take_while(|sample| sample.flight == FIRST).enumerate() {
+        time(sample, number == 0);
+    }
+    for (number, (sample, best_ns)) in program.samples.iter().zip(&mut entry.times_ns).enumerate() {
+        *best_ns = best_ns.min(time(sample, number == 0));
     }
 }
 

@@ -29,7 +29,7 @@ impl<T: Precision> Worst<'_, T> {
         give: T,
     ) {
         if limit.components == 1 {
-            return self.look_along::<1>(limit, signals, bounds, give);
+            return self.look_at_single(limit, signals, bounds, give);
         }
         // Most limits end here: up to this length no signal breaks them by more than rounding, and more than the worst so far, as
         // |direction · signal| ≤ |direction| |signal|.
@@ -42,6 +42,36 @@ impl<T: Precision> Worst<'_, T> {
             self.look_along::<2>(limit, signals, bounds, give);
         } else {
             self.look_along::<3>(limit, signals, bounds, give);
+        }
+    }
+
+    /// Looks at signals with one component. They have few rows, so that the worst is found where its room is, in one go.
+    fn look_at_single(&mut self, limit: &PlacedLimit<T>, signals: &[T], bounds: &[T], give: T) {
+        let components = limit.components::<1>(signals);
+        let (mut worst, mut least) = (None, self.room);
+        for (side, (direction, bound)) in limit.directions.iter().zip(bounds).enumerate() {
+            let upper = *bound + give;
+            // No row of this direction counts as violated by less.
+            let violated = -T::LIMIT * upper.abs() * limit.smallest_scale;
+            let mut least_of_side = if violated < least { violated } else { least };
+            let mut worst_sample = None;
+            let rows = components[0].iter().zip(limit.scales(side, self.scales));
+            for (sample, (signal, scale)) in rows.enumerate() {
+                let room = room(direction, &[*signal], upper, *scale);
+                if room < least_of_side {
+                    (worst_sample, least_of_side) = (Some(sample), room);
+                }
+            }
+            if let Some(sample) = worst_sample {
+                (worst, least) = (Some((side, sample)), least_of_side);
+            }
+        }
+        let Some((side, sample)) = worst else { return };
+        let upper = bounds[side] + give;
+        let scale = limit.scales(side, self.scales)[sample];
+        self.take_worse(limit.row(sample, side), least, rounding(upper, &[components[0][sample]], scale));
+        if self.room > least {
+            self.look_along_sides(limit, &components, bounds, (side, give));
         }
     }
 
@@ -63,9 +93,20 @@ impl<T: Precision> Worst<'_, T> {
         // Mostly that is the constraint.
         self.look_along_side(limit, &components, (side, bounds[side] + give), least);
         if self.room > least {
-            for side in iter::once(side).chain(0..bounds.len()) {
-                self.look_along_side(limit, &components, (side, bounds[side] + give), T::INFINITY);
-            }
+            self.look_along_sides(limit, &components, bounds, (side, give));
+        }
+    }
+
+    /// Looks at all directions sample by sample, beginning with one of them.
+    fn look_along_sides<const C: usize>(
+        &mut self,
+        limit: &PlacedLimit<T>,
+        components: &[&[T]; C],
+        bounds: &[T],
+        (first, give): (usize, T),
+    ) {
+        for side in iter::once(first).chain(0..bounds.len()) {
+            self.look_along_side(limit, components, (side, bounds[side] + give), T::INFINITY);
         }
     }
 
@@ -82,9 +123,7 @@ impl<T: Precision> Worst<'_, T> {
             let signal = components.map(|component| component[sample]);
             let room = room(direction, &signal, upper, *scale);
             if room <= most && room < self.room {
-                let size: T = signal.iter().map(|component| component.abs()).sum();
-                let rounding = T::LIMIT * (upper.abs() + size) * *scale;
-                self.take_worse(limit.row(sample, side), room, rounding);
+                self.take_worse(limit.row(sample, side), room, rounding(upper, &signal, *scale));
             }
         }
     }
@@ -105,6 +144,13 @@ fn room<const C: usize, T: Precision>(factors: &[T; COMPONENTS], signal: &[T; C]
         value += factors[component] * signal[component];
     }
     (upper - value) * scale
+}
+
+/// What rounding may make of the [`room`] that a signal leaves to a bound.
+#[inline]
+fn rounding<const C: usize, T: Precision>(upper: T, signal: &[T; C], scale: T) -> T {
+    let size: T = signal.iter().map(|component| component.abs()).sum();
+    T::LIMIT * (upper.abs() + size) * scale
 }
 
 /// The least [`room`] of some samples, infinity of none; NaN counts as none.
