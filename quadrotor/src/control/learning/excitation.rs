@@ -47,6 +47,12 @@ impl Excitation {
         Self { steady: None }
     }
 
+    /// By how much the velocity in the equation of an interval differs from the steady one, NED, m/s.
+    pub(crate) fn change_of_speed_m_s(&self, terms: &Terms) -> Vector3<f64> {
+        let now = Moving::of(terms);
+        now.speed_m_s - self.steady.unwrap_or(now).speed_m_s
+    }
+
     /// What the equation of an interval shows under noise of this deviation, m/s².
     pub(crate) fn observe(&mut self, terms: &Terms, interval_s: f64, noise_m_s2: f64) -> Shown {
         let now = Moving::of(terms);

@@ -8,6 +8,7 @@ use crate::control::learning::excitation::{Excitation, Shown};
 use crate::control::learning::motion_equation::{
     MEMORY_S, MeasuredMotion, MotionEquation, Sampled, Terms, noise_of_positions, noise_of_velocities,
 };
+use crate::design::controller_limits::thrust_range_n;
 use crate::{Configuration, GRAVITY_M_S2, Sensors, wrench_of_rotors};
 
 /// Learned: μ, the airframe's mass over the learned one; κ, drag per mass along north, east and down, 1/s; d, the
@@ -17,6 +18,8 @@ type Unknowns = SVector<f64, UNKNOWNS>;
 
 /// Range of the learned mass, as a multiple of the airframe's.
 const MASS_RANGE: [f64; 2] = [0.4, 2.5];
+/// Share of the largest thrust that a learned mass may weigh.
+const LIFTED_SHARE: f64 = 0.9;
 /// Most inertia that a learned mass stands for, as a multiple of the configured one.
 const MOST_INERTIA_SHARE: f64 = 2.0;
 /// Most drag per mass, 1/s, unless half of that of the airframe is more. Published ones of quadrotors are from 0.1 to 1.
@@ -51,6 +54,8 @@ const BEGINNING_S: f64 = 0.5;
 const DRAG_DEVIATIONS: f64 = 2.0;
 /// Time in which a gust is forgotten, s: another one follows.
 const GUSTY_S: f64 = 10.0;
+/// Surprises of late, each of which counts less by e within [`GUSTY_S`], beyond which the next one is a gust.
+const MOST_SURPRISES: f64 = 1.5;
 /// How many times more a gust may change the force along the thrust than it shows at once across it.
 const GUST_SWINGS: f64 = 5.0;
 
@@ -100,6 +105,8 @@ pub(crate) struct MassAndDrag {
     settling_s: f64,
     /// How much forces from outside change, m/s², by those across the thrust: no mass does that.
     gusts_m_s2: f64,
+    /// How many surprises there were of late: each counts for less as time goes by.
+    surprises: f64,
 }
 
 impl MassAndDrag {
@@ -113,6 +120,7 @@ impl MassAndDrag {
             steady_force_m_s2: Vector3::zeros(),
             settling_s: SETTLING_S,
             gusts_m_s2: 0.0,
+            surprises: 0.0,
         }
     }
 
@@ -172,7 +180,7 @@ impl MassAndDrag {
     pub(crate) fn take_off(&mut self, configuration: &Configuration) {
         self.estimate.open(&prior(configuration), &[true; UNKNOWNS]);
         self.settling_s = SETTLING_S;
-        self.gusts_m_s2 = 0.0;
+        (self.gusts_m_s2, self.surprises) = (0.0, 0.0);
         self.interrupt();
     }
 
@@ -212,15 +220,27 @@ impl MassAndDrag {
         let rows = [0, 1, 2].map(|axis| row(terms, axis));
         let unexplained_m_s2 = self.innovation(&rows, terms);
         let change_m_s2 = unexplained_m_s2 + self.change_of_force_m_s2(terms);
-        self.watch_gusts(&rows, unexplained_m_s2.xy().norm(), (noise_m_s2, interval_s));
+        // The estimate follows a force that swings within seconds, but for its delay; a drag that is still to be learned swings with the speed.
+        let with_speed_m_s2 =
+            DRAG_DEVIATIONS * DRAG_DEVIATION_1_S * self.excitation.change_of_speed_m_s(terms).norm();
+        let swing_m_s2 = (change_m_s2.xy().norm() - with_speed_m_s2) / GUST_SWINGS;
+        self.watch_gusts(&rows, (unexplained_m_s2.xy().norm(), swing_m_s2), (noise_m_s2, interval_s));
         let surprise_m_s2 = SURPRISE_M_S2 + SURPRISE_DEVIATIONS * noise_m_s2 + GUST_SWINGS * self.gusts_m_s2;
-        if self.settling_s == 0.0 && libm::fabs(change_m_s2.z) > surprise_m_s2 {
+        self.surprises *= libm::exp(-interval_s / GUSTY_S);
+        let along_m_s2 = libm::fabs(change_m_s2.z);
+        let is_surprised = self.settling_s == 0.0 && along_m_s2 > surprise_m_s2;
+        if is_surprised && self.surprises <= MOST_SURPRISES {
             // What the filter remembers is of before. Drag does not jump.
             self.estimate.open(prior, &learned_from(&Shown { mass: true, drag: [false; 3] }));
             self.steady_force_m_s2 = self.force_m_s2();
             self.settling_s = SETTLING_S;
+            self.surprises += 1.0;
             self.interrupt();
             return;
+        }
+        if is_surprised {
+            // Loads do not come and go within seconds: what does is a force.
+            self.gusts_m_s2 = self.gusts_m_s2.max(along_m_s2 / GUST_SWINGS).min(MOST_FORCE_M_S2);
         }
         // A gust across the thrust comes with one along it, which would pass for mass.
         let along_m_s2 = libm::hypot(noise_m_s2, GUST_SWINGS * self.gusts_m_s2);
@@ -229,7 +249,9 @@ impl MassAndDrag {
         self.estimate.forget(prior, interval_s);
         // Filtered equations repeat one another for as long as the filter remembers.
         let repeated = (2.0 * MEMORY_S / interval_s).max(1.0);
-        let deviations = [noise_m_s2, noise_m_s2, along_m_s2];
+        // And one across it passes for drag, as far as the speed changes with it.
+        let across_m_s2 = libm::hypot(noise_m_s2, self.gusts_m_s2);
+        let deviations = [across_m_s2, across_m_s2, along_m_s2];
         for ((row, force_m_s2), deviation) in rows.iter().zip(&terms.specific_force_m_s2).zip(deviations) {
             self.estimate.update(prior, &learned, row, (*force_m_s2, deviation * deviation * repeated));
         }
@@ -237,15 +259,20 @@ impl MassAndDrag {
         self.steady_force_m_s2 += (self.force_m_s2() - self.steady_force_m_s2) * share;
     }
 
-    /// Takes what is not explained of the force across the thrust for a gust, as far as it is not a drag that is still to be learned.
-    /// What a flight begins with is no gust.
-    fn watch_gusts(&mut self, rows: &[Unknowns; 3], across_m_s2: f64, (noise_m_s2, interval_s): (f64, f64)) {
+    /// Takes for a gust what is not explained of the force across the thrust, as far as it is not a drag that is still to be learned, and a
+    /// swing of that force. What a flight begins with is no gust.
+    fn watch_gusts(
+        &mut self,
+        rows: &[Unknowns; 3],
+        (across_m_s2, swing_m_s2): (f64, f64),
+        (noise_m_s2, interval_s): (f64, f64),
+    ) {
         let drag_m_s2 =
             rows[..2].iter().map(|row| self.estimate.deviation(&drag_part(row))).fold(0.0, f64::max);
-        let expected_m_s2 = SURPRISE_DEVIATIONS * noise_m_s2 + DRAG_DEVIATIONS * drag_m_s2;
         let begins = self.settling_s > SETTLING_S - BEGINNING_S;
-        let change_m_s2 = if begins { 0.0 } else { across_m_s2 };
-        let gust_m_s2 = change_m_s2 - expected_m_s2;
+        let change_m_s2 =
+            if begins { 0.0 } else { swing_m_s2.max(across_m_s2 - DRAG_DEVIATIONS * drag_m_s2) };
+        let gust_m_s2 = change_m_s2 - SURPRISE_DEVIATIONS * noise_m_s2;
         let fading_m_s2 = self.gusts_m_s2 * libm::exp(-interval_s / GUSTY_S);
         self.gusts_m_s2 = gust_m_s2.max(fading_m_s2).min(MOST_FORCE_M_S2);
     }
@@ -270,6 +297,7 @@ impl MassAndDrag {
         self.estimate.is_possible(&prior(configuration))
             && (0.0..=SETTLING_S).contains(&self.settling_s)
             && (0.0..=MOST_FORCE_M_S2).contains(&self.gusts_m_s2)
+            && (0.0..=MOST_SURPRISES + 1.0).contains(&self.surprises)
     }
 }
 
@@ -336,6 +364,15 @@ fn believed(configuration: &Configuration) -> Unknowns {
     mean
 }
 
+/// Range of the learned mass, as a multiple of the airframe's: one that flies is lifted by its rotors, with some to lean. What weighs
+/// more is a force.
+fn mass_range(configuration: &Configuration) -> [f64; 2] {
+    let [lightest, heaviest] = MASS_RANGE;
+    let lifted = LIFTED_SHARE * thrust_range_n(configuration).1 / configuration.airframe.weight_n();
+    let believed = configuration.controllers.mass_factor;
+    [lightest, heaviest.min(lifted).max(1.0).max(believed)]
+}
+
 fn prior(configuration: &Configuration) -> Prior<UNKNOWNS> {
     let of = |mass: f64, drag: f64, force: f64| {
         Unknowns::from_fn(|i, _| match i {
@@ -344,7 +381,7 @@ fn prior(configuration: &Configuration) -> Prior<UNKNOWNS> {
             _ => force,
         })
     };
-    let [lightest, heaviest] = MASS_RANGE;
+    let [lightest, heaviest] = mass_range(configuration);
     let mut most = of(1.0 / lightest, MOST_DRAG_1_S, MOST_FORCE_M_S2);
     for (axis, drag_1_s) in configuration.drag_1_s().iter().enumerate() {
         most[1 + axis] = most[1 + axis].max(2.0 * drag_1_s);
