@@ -61,11 +61,11 @@ const GUST_SWINGS: f64 = 5.0;
 
 /// Less thrust than this share of the weight is free fall, which shows no mass.
 const LEAST_THRUST_SHARE: f64 = 0.2;
-/// Slower than this, m/s, by the filtered velocity, it may stand on something that carries it.
+/// Slower than this, m/s, by what the filter has taken in of the velocity, it may stand on something that carries it.
 const AT_REST_M_S: f64 = 0.02;
 /// So high above a ground plane, m, feet that reach down do not touch it.
 const CLEARANCE_M: f64 = 0.1;
-/// Share of a rotor's range of speeds from its ends at which it is saturated.
+/// Share of a rotor's range of speeds from its upper end at which it is saturated.
 const SATURATED_SHARE: f64 = 1e-3;
 
 /// An instant of a flight.
@@ -209,14 +209,25 @@ impl MassAndDrag {
         self.settling_s = (self.settling_s - interval_s).max(0.0);
         if !terms.is_finite() {
             self.interrupt();
-        } else if terms.velocity_m_s.norm() > AT_REST_M_S && !is_saturated(configuration, sample) {
-            self.learn(configuration, &terms, interval_s);
+            return;
+        }
+        let noise_m_s2 = noise_m_s2(&configuration.sensors, terms.filled, interval_s);
+        // Also of what is not learned from: where the thrust was before it changed shows the mass as soon as it has changed.
+        let shown = self.excitation.observe(&terms, interval_s, self.noise_along_m_s2(noise_m_s2));
+        let moves = terms.velocity_m_s.norm() > AT_REST_M_S * terms.filled;
+        if moves && !is_saturated(configuration, sample) {
+            self.learn(configuration, &terms, &shown, (noise_m_s2, interval_s));
         }
     }
 
-    fn learn(&mut self, configuration: &Configuration, terms: &Terms, interval_s: f64) {
+    fn learn(
+        &mut self,
+        configuration: &Configuration,
+        terms: &Terms,
+        shown: &Shown,
+        (noise_m_s2, interval_s): (f64, f64),
+    ) {
         let prior = &prior(configuration);
-        let noise_m_s2 = noise_m_s2(&configuration.sensors, interval_s);
         let rows = [0, 1, 2].map(|axis| row(terms, axis));
         let unexplained_m_s2 = self.innovation(&rows, terms);
         let change_m_s2 = unexplained_m_s2 + self.change_of_force_m_s2(terms);
@@ -242,10 +253,8 @@ impl MassAndDrag {
             // Loads do not come and go within seconds: what does is a force.
             self.gusts_m_s2 = self.gusts_m_s2.max(along_m_s2 / GUST_SWINGS).min(MOST_FORCE_M_S2);
         }
-        // A gust across the thrust comes with one along it, which would pass for mass.
-        let along_m_s2 = libm::hypot(noise_m_s2, GUST_SWINGS * self.gusts_m_s2);
-        let shown = self.excitation.observe(terms, interval_s, along_m_s2);
-        let learned = learned_from(&shown);
+        let along_m_s2 = self.noise_along_m_s2(noise_m_s2);
+        let learned = learned_from(shown);
         self.estimate.forget(prior, interval_s);
         // Filtered equations repeat one another for as long as the filter remembers.
         let repeated = (2.0 * MEMORY_S / interval_s).max(1.0);
@@ -257,6 +266,11 @@ impl MassAndDrag {
         }
         let share = if self.settling_s > 0.0 { 1.0 } else { -libm::expm1(-interval_s / STEADY_FORCE_S) };
         self.steady_force_m_s2 += (self.force_m_s2() - self.steady_force_m_s2) * share;
+    }
+
+    /// Deviation of the equation along the thrust, m/s²: a gust across the thrust comes with one along it, which would pass for mass.
+    fn noise_along_m_s2(&self, noise_m_s2: f64) -> f64 {
+        libm::hypot(noise_m_s2, GUST_SWINGS * self.gusts_m_s2)
     }
 
     /// Takes for a gust what is not explained of the force across the thrust, as far as it is not a drag that is still to be learned, and a
@@ -301,14 +315,17 @@ impl MassAndDrag {
     }
 }
 
-/// Deviation of a filtered equation under the white noise of the sensors, m/s², and what the model misses.
-fn noise_m_s2(sensors: &Sensors, interval_s: f64) -> f64 {
-    let sensed_m_s2 = if sensors.output_feedback {
-        sensors.position_noise_m * libm::sqrt(interval_s) * noise_of_positions()
+/// Deviation of a filtered equation under the white noise of the sensors, m/s², and what the model misses. Of that a filter of velocities has
+/// taken in as much as of all other terms: the first equations of a flight are small, and tell as much as the later ones. One of positions
+/// begins with an estimated velocity, the error of which it has whole from the first equation on.
+fn noise_m_s2(sensors: &Sensors, filled: f64, interval_s: f64) -> f64 {
+    let (sensed_m_s2, missed_m_s2) = if sensors.output_feedback {
+        (sensors.position_noise_m * libm::sqrt(interval_s) * noise_of_positions(), MODEL_NOISE_M_S2)
     } else {
-        sensors.velocity_noise_m_s * libm::sqrt(interval_s) * noise_of_velocities()
+        let sensed_m_s2 = sensors.velocity_noise_m_s * libm::sqrt(interval_s) * noise_of_velocities();
+        (sensed_m_s2, MODEL_NOISE_M_S2 * filled)
     };
-    libm::hypot(MODEL_NOISE_M_S2, sensed_m_s2)
+    libm::hypot(missed_m_s2, sensed_m_s2)
 }
 
 /// One axis of Rᵀ(a − g e₃) = −μ t e₃ − Rᵀ diag(v) κ + Rᵀ d.
@@ -347,12 +364,13 @@ fn flies(configuration: &Configuration, sample: &FlightSample<'_>, thrust_m_s2: 
     is_clear && thrust_m_s2 > LEAST_THRUST_SHARE * GRAVITY_M_S2
 }
 
-/// Whether a rotor is commanded to an end of its range, where it need not do as it is told.
+/// Whether a rotor is commanded to the upper end of its range, where it may lack the power to do as it is told. As slowly as it can turn, it
+/// does.
 fn is_saturated(configuration: &Configuration, sample: &FlightSample<'_>) -> bool {
     let airframe = &configuration.airframe;
     let (slowest, fastest) = (airframe.rotor_speed_min_rad_s, airframe.rotor_speed_max_rad_s);
     let margin = SATURATED_SHARE * (fastest - slowest);
-    let is_free = |speed: &f64| *speed > slowest + margin && *speed < fastest - margin;
+    let is_free = |speed: &f64| *speed < fastest - margin;
     !sample.rotor_command_rad_s.iter().all(is_free)
 }
 

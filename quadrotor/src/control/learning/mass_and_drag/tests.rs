@@ -84,6 +84,39 @@ fn it_converges_to_the_truth() {
     }
 }
 
+/// From hover the thrust falls to 0.6 weights with the rotors' lag, and the vehicle with it while it leans: v̇ = g e₃ − F b₃/m. The mass is
+/// found before it has fallen a decimetre, and the lean, which turns the upright force that stood for the error of the mass across the
+/// thrust, is no gust.
+#[test]
+fn a_fall_shows_the_mass_at_once() {
+    const STEP_US: u64 = 10_000;
+    const FINE_S: f64 = 1e-4;
+    for (belief, slowest) in [(0.5, 0.4), (0.7, 0.25), (1.4, 0.25)] {
+        let configuration = believing(belief);
+        let airframe = &configuration.airframe;
+        let share = |time_s: f64| 0.6 + 0.4 * (-time_s / 0.05).exp();
+        let attitude = |time_s: f64| UnitQuaternion::from_euler_angles(0.0, -(1.5 * time_s).min(0.5), 0.0);
+        let (mut learner, mut velocity_m_s) = (MassAndDrag::new(&configuration), Vector3::zeros());
+        for time_us in (0..1_000_000).step_by(STEP_US as usize) {
+            let time_s = time_us as f64 * 1e-6;
+            let thrust_n = share(time_s) * airframe.weight_n();
+            let speed = (thrust_n / (4.0 * airframe.thrust_coefficient_n_s2)).sqrt();
+            let (attitude_now, rotor_speed_rad_s) = (attitude(time_s), [speed; 4]);
+            let instant = Recorded { velocity_m_s, attitude: attitude_now, rotor_speed_rad_s, time_us };
+            learner.observe(&configuration, &instant.sample());
+            let off = (learner.mass_factor() - 1.0).abs();
+            assert!(time_s < slowest || off < 0.15, "{belief}: off by {off} at {time_s} s");
+            for fine in 0..100 {
+                let at_s = time_s + FINE_S * (f64::from(fine) + 0.5);
+                let thrust = attitude(at_s) * Vector3::z() * (GRAVITY_M_S2 * share(at_s));
+                velocity_m_s += (Vector3::z() * GRAVITY_M_S2 - thrust) * FINE_S;
+            }
+        }
+        assert!(learner.gusts_m_s2 == 0.0, "{belief}: {} m/s²", learner.gusts_m_s2);
+        assert!((learner.mass_factor() - 1.0).abs() < 0.1, "{belief}: {}", learner.mass_factor());
+    }
+}
+
 /// Batch least squares over the differences of a recorded flight, which knows nothing of filters, priors or forgetting.
 #[test]
 fn it_agrees_with_batch_least_squares() {
@@ -131,6 +164,8 @@ fn nothing_is_learned_where_nothing_shows() {
         }
         (learner.mass_factor(), learner.drag_n_s_m(configuration)) == (1.0, Vector3::zeros())
     };
+    const SLOWEST: &[f64; 4] = &[50.0, 300.0, 300.0, 300.0];
+    assert!(!unchanged(&configuration, &|sample| sample.rotor_command_rad_s = SLOWEST), "a slow rotor obeys");
     assert!(!unchanged(&configuration, &|_| ()), "the flight itself is learned from");
     let still = MeasuredMotion::Velocity(Vector3::zeros());
     assert!(unchanged(&configuration, &|sample| sample.motion = still), "at rest");
