@@ -18,6 +18,11 @@ fn item(frame: u8, command: u16, position: [f64; 3]) -> MissionItem {
     MissionItem { frame, command, parameters: [0.0, 0.0, 0.0, f64::NAN], position, autocontinue: true }
 }
 
+fn global(vehicle: &Vehicle, command: u16, frame: u8, [north_m, east_m, height_m]: [f64; 3]) -> MissionItem {
+    let place = vehicle.frame().to_geodetic(&Vector3::new(north_m, east_m, 0.0));
+    item(frame, command, [place.latitude_deg, place.longitude_deg, height_m])
+}
+
 /// The ground below a place north, m: half a wave of a cosine.
 fn ridge_m(north_m: f64) -> f64 {
     let off = f64::min((north_m - 80.0).abs() / 60.0, 1.0);
@@ -102,9 +107,8 @@ fn over_the_crest_of_a_hill_it_keeps_to_its_way() {
     let mut settings = VehicleSettings::new(Identity::Px4);
     settings.surroundings.terrain = Terrain::new(Relief { grid: None, hills: vec![RIDGE] });
     let flight = Flight::new(&settings, |vehicle| {
-        let place = vehicle.frame().to_geodetic(&Vector3::new(160.0, 0.0, 0.0));
-        let position = [place.latitude_deg, place.longitude_deg, HEIGHT_M];
-        vec![item(frame::GLOBAL_TERRAIN, command::NAV_WAYPOINT, position)]
+        let place_m = [160.0, 0.0, HEIGHT_M];
+        vec![global(vehicle, command::NAV_WAYPOINT, frame::GLOBAL_TERRAIN, place_m)]
     });
     flight.keeps_limits();
     let [off_m, heading_rad, lean_rad] = flight.worst();
@@ -133,5 +137,40 @@ fn a_spline_is_flown_under_a_jerk_within_the_limit() {
         let past_m = flight.reference.iter().map(|now| (now.position_m - place_m).norm());
         let past_m = past_m.fold(f64::INFINITY, f64::min);
         assert!(past_m < 0.05, "{past_m} m past {place_m}");
+    }
+}
+
+/// Both places are 10 m above home, the top of the hill between them is 20 m above it: the way leads up to 30 m.
+#[test]
+fn a_way_along_the_ground_that_leads_above_the_fence_is_refused() {
+    for (height_m, is_refused) in [(28.0, true), (32.0, false)] {
+        let mut settings = VehicleSettings::new(Identity::Px4);
+        settings.surroundings.terrain = Terrain::new(Relief { grid: None, hills: vec![RIDGE] });
+        settings.conduct.failsafe.fence_enabled = true;
+        settings.conduct.failsafe.fence_height_m = height_m;
+        let mut vehicle = Vehicle::new(&settings).expect("valid settings");
+        let items = [5.0, 160.0].map(|north_m| {
+            let place_m = [north_m, 0.0, HEIGHT_M];
+            global(&vehicle, command::NAV_WAYPOINT, frame::GLOBAL_TERRAIN, place_m)
+        });
+        let taken = vehicle.set_plan(PlanKind::Mission, items.to_vec());
+        assert_eq!(taken.is_err(), is_refused, "{height_m} m: {taken:?}");
+    }
+}
+
+/// The curve through a corner leads 4 m beside the straight way.
+#[test]
+fn a_spline_that_leads_through_a_zone_beside_the_straight_way_is_refused() {
+    for (north_m, is_refused) in [(33.75, true), (27.0, false)] {
+        let mut settings = VehicleSettings::new(Identity::Px4);
+        settings.conduct.failsafe.fence_enabled = true;
+        let mut vehicle = Vehicle::new(&settings).expect("valid settings");
+        let zone = global(&vehicle, command::NAV_FENCE_CIRCLE_EXCLUSION, frame::GLOBAL, [north_m, 15.0, 0.0]);
+        let zone = MissionItem { parameters: [1.0, 0.0, 0.0, 0.0], ..zone };
+        vehicle.set_plan(PlanKind::Fence, vec![zone]).expect("a fence");
+        let places_m = [[30.0, 0.0, -10.0], [30.0, 30.0, -10.0]];
+        let items = places_m.map(|place_m| item(frame::LOCAL_NED, command::NAV_SPLINE_WAYPOINT, place_m));
+        let taken = vehicle.set_plan(PlanKind::Mission, items.to_vec());
+        assert_eq!(taken.is_err(), is_refused, "a zone at {north_m} m: {taken:?}");
     }
 }

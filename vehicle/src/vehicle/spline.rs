@@ -138,6 +138,23 @@ impl Spline {
     }
 }
 
+/// Places on the curve from a place through the places ahead, NED, m: for each of these those behind the one before it, up to itself.
+pub fn curve_places_m(
+    from_m: Vector3<f64>,
+    ahead_m: &[Vector3<f64>],
+    bend: Bend,
+) -> impl Iterator<Item = Vec<Vector3<f64>>> {
+    const PARTS: usize = 16;
+    let tangents_m = tangents_m(from_m, None, ahead_m, bend);
+    let place_m = |piece: &CurvePiece, part: usize| match part {
+        PARTS => piece.end_m(),
+        _ => piece.position_m(part as f64 / PARTS as f64),
+    };
+    pieces(from_m, None, ahead_m, &tangents_m)
+        .into_iter()
+        .map(move |piece| (1..=PARTS).map(|part| place_m(&piece, part)).collect())
+}
+
 /// The directions at a place and at the places ahead, m.
 fn tangents_m(
     from_m: Vector3<f64>,
