@@ -309,7 +309,12 @@ fn compose(
         let a = if given.acceleration[axis] { acceleration[axis] } else { 0.0 };
         let fed_forward = given.velocity[axis] || given.acceleration[axis];
         if given.position[axis] && fed_forward && moves {
-            AxisTarget::Track { position_m: position[axis], velocity_m_s: v, acceleration_m_s2: a }
+            AxisTarget::Track {
+                position_m: position[axis],
+                velocity_m_s: v,
+                acceleration_m_s2: a,
+                jerk_m_s3: 0.0,
+            }
         } else if given.position[axis] {
             AxisTarget::Position(position[axis])
         } else if given.velocity[axis] {

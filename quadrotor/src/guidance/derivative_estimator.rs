@@ -25,6 +25,9 @@ const OFF: f64 = 0.1;
 const DEVIATIONS: f64 = 6.0;
 /// Polynomials below this degree do not tell another motion from a curved one.
 const TELLING: usize = 3;
+/// Among the few samples before that, a change that is so many times as fast as the one before or behind it is a step, not motion. Those
+/// of smooth motions become so much faster only where they hardly move.
+const STEP: f64 = 4.0;
 
 /// Estimates the derivatives of a signal that is set every so often and held in between, from its changes within the last 0.4 s or
 /// seven of them.
@@ -37,6 +40,15 @@ pub struct DerivativeEstimator<const AXES: usize> {
     held: SVector<f64, AXES>,
     since_us: u64,
     noise: SignalNoise,
+}
+
+/// A step between two samples.
+#[derive(Clone, Copy)]
+enum Step {
+    /// Before the last sample.
+    Before,
+    /// After it.
+    After,
 }
 
 /// Derivatives of a signal at an instant.
@@ -108,6 +120,12 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
         if jumps || fit.is_some_and(|fit| self.is_off(value, &fit)) {
             self.begin(value, time_us);
         } else if elapsed_us >= SPACING_US {
+            match self.step_to(value, time_us) {
+                Some(Step::After) => return self.begin(value, time_us),
+                Some(Step::Before) => self.begin(&last, last_us),
+                None => {}
+            }
+            (self.held, self.since_us) = (*value, time_us);
             self.push(value, time_us);
         }
     }
@@ -162,6 +180,26 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
         (value - fit.derivatives[0]).norm() > OFF * largest + DEVIATIONS * fit.deviation
     }
 
+    /// Where a new sample shows a step, while there are few of them: behind the last one, or before it if that was the second.
+    fn step_to(&self, value: &SVector<f64, AXES>, time_us: u64) -> Option<Step> {
+        let used = self.used();
+        let [.., (first_us, first), (last_us, last)] = used else { return None };
+        if used.len() >= TELLING + 2 {
+            return None;
+        }
+        let noise = DEVIATIONS * libm::sqrt(2.0 * self.noise.variance());
+        let [before_s, after_s] =
+            [last_us.saturating_sub(*first_us), time_us.saturating_sub(*last_us)].map(|us| us as f64 / 1e6);
+        let (before, after) = ((last - first).norm(), (value - last).norm());
+        if after > STEP * before * after_s / before_s + noise {
+            Some(Step::After)
+        } else if used.len() == 2 && before > STEP * after * before_s / after_s + noise {
+            Some(Step::Before)
+        } else {
+            None
+        }
+    }
+
     fn push(&mut self, value: &SVector<f64, AXES>, time_us: u64) {
         let period_us = self.used().last().map_or(0, |(last_us, _)| time_us.saturating_sub(*last_us));
         let oldest_us = time_us.saturating_sub(WINDOW_US.max(PERIODS * period_us));
@@ -183,7 +221,7 @@ mod tests {
 
     use nalgebra::Vector3;
 
-    use super::{DerivativeEstimator, Derivatives};
+    use super::{DerivativeEstimator, Derivatives, SPACING_US};
 
     const FASTEST: f64 = 200.0;
 
@@ -265,6 +303,55 @@ mod tests {
                 let known = error < 1e-9 && found.second.norm() < 1e-9;
                 assert!(known || since < 0.15, "{t} each {period_us} µs: {found:?}");
                 assert!(found.first.norm() < JERK + 1e-9 && found.second.norm() < JERK, "{t}: {found:?}");
+            }
+        }
+    }
+
+    /// A level circle of 12 m, flown under accelerations of 0.8 m/s² along it that change their sign so many times a second: the
+    /// acceleration after a time, or its derivative where it has one.
+    fn trapezoids(period_s: f64, order: i32, t: f64) -> Vector3<f64> {
+        const RADIUS_M: f64 = 12.0;
+        let (push, whole) = (0.8, libm::floor(t / period_s));
+        let since = t - whole * period_s;
+        let (start, sign) = if whole as i32 % 2 == 0 { (3.0, 1.0) } else { (3.0 + push * period_s, -1.0) };
+        let (speed, a) = (start + sign * push * since, sign * push);
+        let way = whole * period_s * (3.0 + push * period_s / 2.0) + (start + speed) / 2.0 * since;
+        let (sin, cos) = (way / RADIUS_M).sin_cos();
+        let (along, inward) = (Vector3::new(-sin, cos, 0.0), Vector3::new(-cos, -sin, 0.0));
+        match order {
+            0 => along * a + inward * (speed * speed / RADIUS_M),
+            _ => {
+                inward * (3.0 * speed * a / RADIUS_M) - along * (speed * speed * speed / RADIUS_M / RADIUS_M)
+            }
+        }
+    }
+
+    /// The acceleration of 0.8 m/s² turns round at once; taken for motion, that was a jerk of up to 100 m/s³. The oracle is the
+    /// motion between the steps: jerk is hardly larger than there, and is found soon after a step where the samples allow.
+    #[test]
+    fn steps_of_a_moving_acceleration_are_no_jerk() {
+        for period_us in [1_000, 10_000, 20_000, 50_000, 100_000] {
+            for period_s in [0.1, 0.15, 0.31, 0.47, 0.83, 1.7] {
+                // Between two steps there must be more than two samples.
+                if period_s < 2.4e-6 * period_us.max(SPACING_US) as f64 {
+                    continue;
+                }
+                let signal = |t: f64| trapezoids(period_s, 0, t);
+                for (t, found) in estimates(signal, period_us) {
+                    let largest = 2.5;
+                    assert!(
+                        found.first.norm() < largest,
+                        "{t} each {period_us} µs, {period_s} s: {}",
+                        found.first.norm()
+                    );
+                    let since = t - libm::floor(t / period_s) * period_s;
+                    let off = (found.first - trapezoids(period_s, 1, t)).norm();
+                    let soon = 0.2 + 4.0e-6 * period_us as f64;
+                    assert!(
+                        t < 1.0 || since < soon || off < 0.1,
+                        "{t} each {period_us} µs, {period_s} s: {off}"
+                    );
+                }
             }
         }
     }

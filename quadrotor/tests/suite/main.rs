@@ -32,4 +32,5 @@ mod redesign;
 mod references;
 mod rotor_loss;
 mod stability;
+mod steps_of_acceleration;
 mod two_rotors_lost;

@@ -208,7 +208,7 @@ fn a_shaped_reference_flies_what_it_expects() {
 
 /// The thirty lines of a geometric controller: attitude and thrust from the wanted acceleration, torques from the error of the
 /// attitude and from the angular acceleration that the trajectory has when the rotors have followed.
-fn geometric(
+pub fn geometric(
     airframe: &Airframe,
     mixer: &Mixer,
     state: &PlantState,

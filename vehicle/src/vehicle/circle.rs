@@ -135,6 +135,7 @@ impl Circle {
             position_m: position_m[axis],
             velocity_m_s: velocity_m_s[axis],
             acceleration_m_s2: acceleration_m_s2[axis],
+            jerk_m_s3: 0.0,
         });
         PositionSetPoint { axes, yaw: YawTarget::Track(self.heading_rad(), self.yaw_rate_rad_s()) }
     }

@@ -124,6 +124,7 @@ impl Follow {
             position_m: next.position_m[axis],
             velocity_m_s: next.velocity_m_s[axis],
             acceleration_m_s2: next.acceleration_m_s2[axis],
+            jerk_m_s3: 0.0,
         });
         proposal.follow(situation, &PositionSetPoint { axes, yaw });
         self.way = Some(next);

@@ -12,6 +12,8 @@ use nalgebra::Vector3;
 use super::heading_policy::{HeadingPolicy, Purpose};
 use super::set_point::{PositionSetPoint, YawTarget};
 use super::situation::Situation;
+use crate::plan::Place;
+use crate::plan::step::Navigate;
 use crate::surroundings::Terrain;
 
 /// Largest distance between the places, on the map, m.
@@ -66,6 +68,19 @@ impl GroundWay {
             place_m
         })
     }
+}
+
+/// Whether the way to a step's place follows the ground.
+pub fn leads_along_ground(step: &Navigate, terrain: &Terrain) -> bool {
+    let place = match step {
+        Navigate::Waypoint(_)
+        | Navigate::Loiter { .. }
+        | Navigate::LoiterTime { .. }
+        | Navigate::LoiterTurns(_)
+        | Navigate::PlacePayload { .. } => step.place(),
+        _ => None,
+    };
+    !terrain.is_flat() && place.is_some_and(Place::is_above_ground)
 }
 
 /// A set-point on a curve, with the heading that the parameter asks for.

@@ -73,7 +73,8 @@ mod tests {
 
     #[test]
     fn set_points_lead_by_the_most_that_they_say() {
-        let track = AxisTarget::Track { position_m: 0.0, velocity_m_s: 1.0, acceleration_m_s2: 0.0 };
+        let track =
+            AxisTarget::Track { position_m: 0.0, velocity_m_s: 1.0, acceleration_m_s2: 0.0, jerk_m_s3: 0.0 };
         for (axis, lead) in [
             (AxisTarget::Position(1.0), Lead::Place),
             (track, Lead::Trajectory),

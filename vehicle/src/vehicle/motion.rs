@@ -80,11 +80,16 @@ impl Motion {
     pub fn reference(&mut self, time_us: u64) -> PositionReference {
         let t = time_us.saturating_sub(self.since_us) as f64 / 1e6;
         for (axis, target) in self.set_point.axes.iter().enumerate() {
-            if let AxisTarget::Track { position_m: p, velocity_m_s: v, acceleration_m_s2: a } = *target {
-                self.state.position_m[axis] = p + (v + a / 2.0 * t) * t;
-                self.state.velocity_m_s[axis] = v + a * t;
-                self.state.acceleration_m_s2[axis] = a;
-            }
+            let AxisTarget::Track { position_m: p, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j } =
+                *target
+            else {
+                self.state.jerk_m_s3[axis] = 0.0;
+                continue;
+            };
+            self.state.position_m[axis] = p + (v + (a / 2.0 + j / 6.0 * t) * t) * t;
+            self.state.velocity_m_s[axis] = v + (a + j / 2.0 * t) * t;
+            self.state.acceleration_m_s2[axis] = a + j * t;
+            self.state.jerk_m_s3[axis] = j;
         }
         if let YawTarget::Track(yaw_rad, rate_rad_s) = self.set_point.yaw {
             self.state.yaw_rad = yaw_rad + rate_rad_s * t;
@@ -380,7 +385,8 @@ mod tests {
 
     #[test]
     fn a_trajectory_runs_on_between_its_points() {
-        let track = AxisTarget::Track { position_m: 1.0, velocity_m_s: 2.0, acceleration_m_s2: -1.0 };
+        let track =
+            AxisTarget::Track { position_m: 1.0, velocity_m_s: 2.0, acceleration_m_s2: -1.0, jerk_m_s3: 0.0 };
         let set_point = PositionSetPoint { axes: [track; 3], yaw: YawTarget::Track(0.5, 0.1) };
         let mut motion = Motion::from(at_rest(Vector3::zeros(), 0.0), set_point, 1_000_000);
         let reference = motion.reference(1_200_000);

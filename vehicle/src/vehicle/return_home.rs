@@ -180,7 +180,7 @@ impl Return {
     /// One tick along the ground; the last piece ends at rest, at the goal of the shaper.
     fn follow_ground(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let Some((way, mut spline)) = self.ground_way.take() else { return };
-        if let Some(set_point) = spline.step(situation.limits(), TICK_S) {
+        if let Some(set_point) = spline.step(TICK_S) {
             let way_rad = way.bearing_rad().unwrap_or(situation.outputs.setpoint.yaw_rad);
             proposal.follow(situation, &headed(set_point, Purpose::Return, way_rad, situation));
             self.ground_way = Some((way, spline));

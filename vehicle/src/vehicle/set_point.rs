@@ -12,7 +12,7 @@ pub enum AxisTarget {
     Velocity(f64),
     /// Accelerate, m/s², within the limits of speed.
     Acceleration(f64),
-    /// A point of a trajectory, as it is: position, m, velocity, m/s, acceleration, m/s².
+    /// A point of a trajectory, as it is: position, m, velocity, m/s, acceleration, m/s², jerk, m/s³.
     Track {
         /// Position, m.
         position_m: f64,
@@ -20,6 +20,8 @@ pub enum AxisTarget {
         velocity_m_s: f64,
         /// Acceleration, m/s².
         acceleration_m_s2: f64,
+        /// Jerk, m/s³; zero on all axes is one that is not known.
+        jerk_m_s3: f64,
     },
 }
 

@@ -132,6 +132,7 @@ mod tests {
             position_m: position_m[axis],
             velocity_m_s: velocity_m_s[axis],
             acceleration_m_s2: 0.0,
+            jerk_m_s3: 0.0,
         });
         PositionSetPoint { axes, yaw: YawTarget::Hold }
     }
@@ -193,7 +194,12 @@ mod tests {
     fn what_is_no_curve_stays_as_it_is() {
         let given = {
             let mut given = on_the_circle(0);
-            given.axes[0] = AxisTarget::Track { position_m: 1.0, velocity_m_s: 2.0, acceleration_m_s2: -0.3 };
+            given.axes[0] = AxisTarget::Track {
+                position_m: 1.0,
+                velocity_m_s: 2.0,
+                acceleration_m_s2: -0.3,
+                jerk_m_s3: 0.0,
+            };
             given
         };
         let place = PositionSetPoint { axes: [AxisTarget::Position(1.0); 3], yaw: YawTarget::Hold };

@@ -94,7 +94,7 @@ fn guided_target(vehicle: &Vehicle, asked: &PositionSetPoint) -> MavMessage {
             AxisTarget::Position(position_m) => place[axis] = position_m as f32,
             AxisTarget::Velocity(velocity_m_s) => velocity[axis] = velocity_m_s as f32,
             AxisTarget::Acceleration(acceleration_m_s2) => acceleration[axis] = acceleration_m_s2 as f32,
-            AxisTarget::Track { position_m, velocity_m_s, acceleration_m_s2 } => {
+            AxisTarget::Track { position_m, velocity_m_s, acceleration_m_s2, .. } => {
                 place[axis] = position_m as f32;
                 velocity[axis] = velocity_m_s as f32;
                 acceleration[axis] = acceleration_m_s2 as f32;

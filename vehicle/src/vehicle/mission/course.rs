@@ -17,10 +17,10 @@ use super::super::takeoff::is_slow_near;
 use super::super::tick::TICK_S;
 use super::leg::{Guide, Leg, LegProgress, Turn, is_at_rest, is_settling};
 use super::route::Route;
-use super::task::{Lowering, Task, TaskProgress, Then};
+use super::task::{Lowering, Task, TaskProgress, Then, delay_end_us};
 use crate::equipment::Operation;
 use crate::plan::Place;
-use crate::plan::step::{Delay, Navigate};
+use crate::plan::step::Navigate;
 
 /// What is being done for the present step.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -147,14 +147,16 @@ impl Course {
                 let z_m = end_m.map_or(least_z_m, |end_m| end_m.z);
                 self.begin_climb(z_m.min(least_z_m), false, situation, proposal)
             }
-            Navigate::Spline { hold_s, .. } => match self.begin_spline(*hold_s, route, situation) {
-                Some(task) => task,
-                None => return TaskProgress::Going,
-            },
-            step if route.follows_ground(step) => match self.begin_ground_way(step, route, situation) {
-                Some(task) => task,
-                None => return TaskProgress::Going,
-            },
+            Navigate::Spline { hold_s, .. } => {
+                return self.begin_curve(situation, |course, onward| {
+                    course.begin_spline(*hold_s, onward, route, situation)
+                });
+            }
+            step if route.follows_ground(step) => {
+                return self.begin_curve(situation, |course, onward| {
+                    course.begin_ground_way(step, onward, route, situation)
+                });
+            }
             // A leg begins at rest, after a turn or in full motion.
             _ if self.turn.is_none() && is_settling(&situation.outputs.setpoint) => {
                 return TaskProgress::Going;
@@ -171,26 +173,41 @@ impl Course {
         TaskProgress::Going
     }
 
-    /// A curve goes on from the piece before it, or begins at rest.
-    fn begin_spline(&mut self, hold_s: f64, route: &Route, situation: &Situation) -> Option<Task> {
+    /// A piece of a curve goes on within the same tick from the piece before it, or begins at rest.
+    fn begin_curve(
+        &mut self,
+        situation: &Situation,
+        begin: impl FnOnce(&mut Self, Option<Onward>) -> Option<Task>,
+    ) -> TaskProgress {
         let onward = self.onward.take().filter(|onward| onward.time_us == situation.time_us);
-        let reference = &situation.outputs.setpoint;
-        if onward.is_none() && !is_at_rest(reference) {
-            return None;
+        if onward.is_none() && !is_at_rest(&situation.outputs.setpoint) {
+            return TaskProgress::Going;
         }
-        let from_m = onward.map_or(reference.position_m, |onward| onward.position_m);
+        self.task = begin(self, onward);
+        if self.task.is_some() && onward.is_some() { TaskProgress::Again } else { TaskProgress::Going }
+    }
+
+    fn begin_spline(
+        &self,
+        hold_s: f64,
+        onward: Option<Onward>,
+        route: &Route,
+        situation: &Situation,
+    ) -> Option<Task> {
+        let from_m = onward.map_or(situation.outputs.setpoint.position_m, |onward| onward.position_m);
         let spline = Spline::new(from_m, onward, &route.curve_m(&from_m), Bend::Wide, situation.limits())?;
         Some(Task::Spline(spline, hold_s))
     }
 
-    /// The next piece of a way that follows the ground: it goes on from the one before it, or begins at rest.
-    fn begin_ground_way(&mut self, step: &Navigate, route: &Route, situation: &Situation) -> Option<Task> {
-        let onward = self.onward.take().filter(|onward| onward.time_us == situation.time_us);
-        let reference = &situation.outputs.setpoint;
-        if onward.is_none() && !is_at_rest(reference) {
-            return None;
-        }
-        let here_m = onward.map_or(reference.position_m, |onward| onward.position_m);
+    /// The next piece of a way that follows the ground.
+    fn begin_ground_way(
+        &mut self,
+        step: &Navigate,
+        onward: Option<Onward>,
+        route: &Route,
+        situation: &Situation,
+    ) -> Option<Task> {
+        let here_m = onward.map_or(situation.outputs.setpoint.position_m, |onward| onward.position_m);
         let way = GroundWay::new(self.anchor_m, route.leg_end_m(step, &self.anchor_m)?);
         let places_m = route.ground_places_m(&self.anchor_m, &here_m);
         let spline = Spline::new(here_m, onward, &places_m, Bend::Close, situation.limits())?;
@@ -208,7 +225,7 @@ impl Course {
         situation: &Situation,
         proposal: &mut Proposal,
     ) -> TaskProgress {
-        if let Some(set_point) = spline.step(situation.limits(), TICK_S) {
+        if let Some(set_point) = spline.step(TICK_S) {
             let set_point = if self.heading_is_asked {
                 PositionSetPoint { yaw: YawTarget::Angle(self.heading_rad), ..set_point }
             } else {
@@ -248,7 +265,7 @@ impl Course {
         situation: &Situation,
         proposal: &mut Proposal,
     ) -> TaskProgress {
-        if let Some(set_point) = spline.step(situation.limits(), TICK_S) {
+        if let Some(set_point) = spline.step(TICK_S) {
             proposal.follow(situation, &set_point);
             self.task = Some(Task::Spline(spline, hold_s));
             return TaskProgress::Going;
@@ -472,16 +489,5 @@ impl Course {
         };
         self.task = Some(task);
         progress
-    }
-}
-
-/// When a delay ends that begins now, µs.
-fn delay_end_us(delay: &Delay, situation: &Situation) -> u64 {
-    match delay {
-        Delay::Until(time) => {
-            let unix_us = situation.unix_start_us + situation.time_us;
-            situation.time_us.saturating_add(time.wait_us(unix_us))
-        }
-        Delay::For(time_s) => situation.after_us(*time_s),
     }
 }

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use quadrotor::Limits;
 
-use super::super::ground_way::{GroundWay, PLACES_AHEAD};
+use super::super::ground_way::{GroundWay, PLACES_AHEAD, leads_along_ground};
 use super::super::proposal::Proposal;
 use super::super::situation::Situation;
 use super::super::trajectory::Blend;
@@ -107,15 +107,7 @@ impl<'a> Route<'a> {
 
     /// Whether the way to a step's place follows the ground.
     pub fn follows_ground(&self, step: &Navigate) -> bool {
-        let place = match step {
-            Navigate::Waypoint(_)
-            | Navigate::Loiter { .. }
-            | Navigate::LoiterTime { .. }
-            | Navigate::LoiterTurns(_)
-            | Navigate::PlacePayload { .. } => step.place(),
-            _ => None,
-        };
-        !self.terrain.is_flat() && place.is_some_and(Place::is_above_ground)
+        leads_along_ground(step, self.terrain)
     }
 
     /// Places ahead on ways that follow the ground, up to the first at which the vehicle rests: from `here_m` on the present step's,

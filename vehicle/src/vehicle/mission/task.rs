@@ -1,9 +1,11 @@
 //! What is being done for a step.
 
 use super::super::ground_way::GroundWay;
+use super::super::situation::Situation;
 use super::super::spline::Spline;
 use super::circle_turns::CircleTurns;
 use super::leg::{Leg, Turn};
+use crate::plan::step::Delay;
 
 /// A task.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,4 +89,15 @@ pub enum TaskProgress {
     Again,
     /// The step is done; the next leg may take a turn over.
     Done(Option<Turn>),
+}
+
+/// When a delay ends that begins now, µs.
+pub fn delay_end_us(delay: &Delay, situation: &Situation) -> u64 {
+    match delay {
+        Delay::Until(time) => {
+            let unix_us = situation.unix_start_us + situation.time_us;
+            situation.time_us.saturating_add(time.wait_us(unix_us))
+        }
+        Delay::For(time_s) => situation.after_us(*time_s),
+    }
 }
