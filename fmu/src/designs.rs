@@ -22,10 +22,9 @@ fn designs() -> MutexGuard<'static, Designs> {
 
 /// The design of a configuration: made once, as long as there is an instance. Instances that ask at once may each make it.
 pub(crate) fn design(configuration: &Configuration) -> Result<PreparedDesign, ConfigurationError> {
-    if let Some(design) = designs().cache.find(configuration) {
-        return Ok(design);
-    }
-    let design = PreparedDesign::new(configuration)?;
+    // Designing takes long: meanwhile, others may look.
+    let mut known = designs().cache.clone();
+    let design = known.design(configuration)?;
     let mut designs = designs();
     if designs.users > 0 {
         designs.cache.keep(&design);

@@ -262,9 +262,8 @@ impl Fleet {
         let refused = |vehicle: usize| move |error| FleetError::Configuration { vehicle, error };
         let kinds = Kinds::of(configurations, Configuration::fingerprint, is_same);
         let members = threads.install(|| {
-            let design =
-                |vehicle: &usize| PreparedDesign::new(&configurations[*vehicle]).map_err(refused(*vehicle));
-            let designs = kinds.first.par_iter().map(design).collect::<Result<Vec<_>, _>>()?;
+            let designs = designs(kinds.first.iter().map(|vehicle| &configurations[*vehicle]).collect())
+                .map_err(|(kind, error)| refused(kinds.first[kind])(error))?;
             let member = |(vehicle, kind): (usize, &usize)| {
                 let simulation = Simulation::prepared(&designs[*kind], &inputs(vehicle));
                 Ok(Member { vehicle: simulation.map_err(refused(vehicle))?, failure: None })
@@ -284,6 +283,20 @@ impl Fleet {
     pub fn outputs(&self) -> Vec<Outputs> {
         self.map(|_, simulation| simulation.outputs())
     }
+}
+
+/// The designs of configurations, or the index of one that is refused. Vehicles of a fleet mostly differ in little, so the others take over
+/// from the first one what they can.
+fn designs(configurations: Vec<&Configuration>) -> Result<Vec<PreparedDesign>, (usize, ConfigurationError)> {
+    let Some((first, others)) = configurations.split_first() else { return Ok(Vec::new()) };
+    let first = PreparedDesign::new(first).map_err(|error| (0, error))?;
+    let adapted = others
+        .par_iter()
+        .enumerate()
+        .map(|(index, configuration)| first.adapted(configuration).map_err(|error| (index + 1, error)));
+    let mut designs = adapted.collect::<Result<Vec<_>, _>>()?;
+    designs.insert(0, first);
+    Ok(designs)
 }
 
 fn pool(threads: Option<NonZeroUsize>) -> Result<ThreadPool, FleetError> {

@@ -16,12 +16,14 @@
 //!  vehicle      the state machines over the closed loop, and the place that decides between them
 //!  foreign      a closed loop or a plant from elsewhere, in place of ours
 //!  parameters   all settings by their identifiers
+//!  designs      controllers that were designed already
 //! ```
 
 #![forbid(unsafe_code)]
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 mod absent_mode;
+mod designs;
 pub mod equipment;
 pub mod estimation;
 pub mod fault;

@@ -48,7 +48,8 @@ impl DesignCache {
         self.known.push(design.clone());
     }
 
-    /// The design of a configuration: the known one, or a new one, which is kept.
+    /// The design of a configuration: the known one, or a new one, which is kept. What a new one has in common with the one that was asked
+    /// for last is [taken over](PreparedDesign::adapted) from that.
     ///
     /// # Errors
     /// Those of [`PreparedDesign::new`].
@@ -56,7 +57,10 @@ impl DesignCache {
         if let Some(design) = self.find(configuration) {
             return Ok(design);
         }
-        let design = PreparedDesign::new(configuration)?;
+        let design = match self.known.last() {
+            Some(latest) => latest.adapted(configuration)?,
+            None => PreparedDesign::new(configuration)?,
+        };
         self.keep(&design);
         Ok(design)
     }
@@ -96,7 +100,7 @@ mod tests {
     use alloc::sync::Arc;
 
     use super::DesignCache;
-    use crate::{Configuration, PreparedDesign};
+    use crate::{Configuration, ControllerKind, PreparedDesign, RotorLayout};
 
     fn of_mass(mass_kg: f64) -> Configuration {
         let mut configuration = Configuration::default();
@@ -120,6 +124,37 @@ mod tests {
         cache.design(&of_mass(0.8)).unwrap();
         assert!(cache.find(&of_mass(0.7)).is_none());
         assert!(are_one(&cache.find(&of_mass(0.6)).unwrap(), &light));
+    }
+
+    /// Whatever differs: the start, a controller, the airframe, the noise, limits, or nothing that a design depends on.
+    #[test]
+    fn what_is_taken_over_is_what_would_be_designed() {
+        let changes: [fn(&mut Configuration); 9] = [
+            |changed| changed.initial.position_m = [3.0, -2.0, -7.0],
+            |changed| changed.airframe.mass_kg = 0.7,
+            |changed| changed.airframe.layout = RotorLayout::h(1.2),
+            |changed| changed.airframe.rotor_time_constant_s = 0.04,
+            |changed| changed.controllers.position.terms = 6,
+            |changed| changed.controllers.kind = ControllerKind::Dlqr,
+            |changed| changed.sensors.position_noise_m = 0.02,
+            |changed| changed.limits.tilt_rad = 0.3,
+            |changed| changed.environment.ground_plane = true,
+        ];
+        let mut cache = DesignCache::with_room(1);
+        cache.design(&Configuration::default()).unwrap();
+        // Each on top of those before, and back.
+        let mut changed = Configuration::default();
+        for change in changes {
+            change(&mut changed);
+            assert_eq!(cache.design(&changed).unwrap(), PreparedDesign::new(&changed).unwrap());
+        }
+        let first = Configuration::default();
+        assert_eq!(cache.design(&first).unwrap(), PreparedDesign::new(&first).unwrap());
+        // A refusal does not blame what was designed before.
+        changed = first;
+        changed.airframe.rotor_spin.inertia_kg_m2 = 4e-4;
+        assert_eq!(cache.design(&changed), PreparedDesign::new(&changed));
+        assert!(cache.design(&changed).is_err());
     }
 
     #[test]

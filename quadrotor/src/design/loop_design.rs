@@ -34,6 +34,18 @@ impl LoopDesign {
     /// [`ConfigurationError::Fixed`] when a parameter of the start differs, and those of [`StabilityReport::new`].
     pub(crate) fn changed(&self, configuration: &Configuration) -> Result<Self, ConfigurationError> {
         same_start(&self.configuration, configuration)?;
+        self.adapted(configuration, Some(&self.configuration))
+    }
+
+    /// The same for a configuration of another flight, or, with the one that flew, of this flight.
+    ///
+    /// # Errors
+    /// Those of [`StabilityReport::new`].
+    pub(crate) fn adapted(
+        &self,
+        configuration: &Configuration,
+        flown: Option<&Configuration>,
+    ) -> Result<Self, ConfigurationError> {
         let mut cascade = self.cascade.clone();
         cascade.redesign(&self.configuration, configuration)?;
         let rotor_loss = if RotorLossDesign::is_same(&self.configuration, configuration) {
@@ -44,7 +56,7 @@ impl LoopDesign {
         let stability = if StabilityReport::is_same(&self.configuration, configuration) {
             self.stability.clone()
         } else {
-            judged(configuration, &cascade, Some(&self.configuration))?
+            judged(configuration, &cascade, flown)?
         };
         Ok(Self { configuration: *configuration, cascade, rotor_loss, stability })
     }

@@ -3,7 +3,7 @@
 use alloc::sync::Arc;
 
 use crate::design::loop_design::LoopDesign;
-use crate::{Configuration, ConfigurationError};
+use crate::{Configuration, ConfigurationError, StabilityReport};
 
 /// Controllers for a configuration, ready to fly: made once, shared by any number of flights, and never changed by them.
 ///
@@ -22,6 +22,20 @@ impl PreparedDesign {
     /// or the closed loop is unstable or shaken by noise.
     pub fn new(configuration: &Configuration) -> Result<Self, ConfigurationError> {
         Ok(Self { design: Arc::new(LoopDesign::new(configuration)?) })
+    }
+
+    /// The design of another configuration: that of [`PreparedDesign::new`], with what does not depend on the difference taken over from
+    /// this one instead of being designed again. Where a flight starts, for example, changes no controller.
+    ///
+    /// # Errors
+    /// Those of [`PreparedDesign::new`].
+    pub fn adapted(&self, configuration: &Configuration) -> Result<Self, ConfigurationError> {
+        Ok(Self { design: Arc::new(self.design.adapted(configuration, None)?) })
+    }
+
+    /// How the closed loop behaves about hover.
+    pub fn stability(&self) -> &StabilityReport {
+        &self.design.stability
     }
 
     /// What it was designed for.

@@ -70,7 +70,7 @@ pub(super) fn set_parameters(
     table.set_together(&settings_by_name, &mut values).map_err(|(_, error)| error)?;
     let warning =
         |warning: &StabilityWarning| Notice { severity: Severity::Warning, text: warning.to_string() };
-    chosen.warnings = values.check()?.warnings().iter().map(warning).collect();
+    chosen.warnings = values.check()?.stability().warnings().iter().map(warning).collect();
     settings.conduct = values.conduct;
     settings.configuration = values.configuration;
     Ok(chosen)

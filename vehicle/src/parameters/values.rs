@@ -1,8 +1,9 @@
 //! What the parameters are parameters of, as plain data.
 
-use quadrotor::{Configuration, ConfigurationError, StabilityReport};
+use quadrotor::{Configuration, ConfigurationError, PreparedDesign};
 
 use super::{Speed, Statistics};
+use crate::designs::design;
 use crate::vehicle::Conduct;
 
 /// Everything that parameters are read from and written into. A running vehicle fills it from its state, and takes a changed
@@ -22,12 +23,13 @@ pub struct ParameterValues {
 }
 
 impl ParameterValues {
-    /// Whether a closed loop can be built with these values, and how it flies.
+    /// The closed loop with these values, if it can be built. A [`Vehicle`](crate::Vehicle) that this thread makes with them next has the
+    /// same one.
     ///
     /// # Errors
     /// [`ConfigurationError`] when values contradict one another, a controller cannot be designed, or the vehicle would be
     /// lost.
-    pub fn check(&self) -> Result<StabilityReport, ConfigurationError> {
-        StabilityReport::new(&self.configuration)
+    pub fn check(&self) -> Result<PreparedDesign, ConfigurationError> {
+        design(&self.configuration)
     }
 }

@@ -10,6 +10,7 @@ use super::change_error::ChangeError;
 use super::foreign_flight::ForeignFlight;
 use super::steering::Steering;
 use crate::FlightError;
+use crate::designs::design;
 use crate::foreign::{ForeignDescription, ForeignModel, ForeignMotion};
 use crate::world::{Wind, WindSettings, WindShape};
 
@@ -55,7 +56,7 @@ impl ClosedLoop {
         ground_z_m: f64,
     ) -> Result<Self, ConfigurationError> {
         let inputs = Inputs { armed: false, ground_z_m, ..Inputs::default() };
-        let simulation = Simulation::new(configuration, &inputs)?;
+        let simulation = Simulation::prepared(&design(configuration)?, &inputs)?;
         let limits = EasedLimits::new(&configuration.flyable_limits());
         Ok(Self { simulation, foreign: None, limits, wind: Wind::new(wind), wind_m_s: Vector3::zeros() })
     }
