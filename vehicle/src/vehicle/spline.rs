@@ -138,6 +138,49 @@ impl Piece {
     }
 }
 
+/// The places of a curve.
+struct Nodes {
+    nodes_m: Vec<Vector3<f64>>,
+    /// How long directions are between two neighbours.
+    share: f64,
+}
+
+impl Nodes {
+    fn new(from_m: Vector3<f64>, ahead_m: &[Vector3<f64>], bend: Bend) -> Self {
+        let share = match bend {
+            Bend::Wide => 1.0,
+            Bend::Close => 0.5,
+        };
+        let mut nodes_m = vec![from_m];
+        nodes_m.extend(ahead_m);
+        Self { nodes_m, share }
+    }
+
+    /// The direction at a place. At a stop it is that of the way.
+    fn tangent_m(&self, index: usize) -> Vector3<f64> {
+        let [before, here, after] = [index.checked_sub(1), Some(index), Some(index + 1)]
+            .map(|index| self.nodes_m.get(index?).copied());
+        let here = here.unwrap_or_default();
+        let length = if before.is_some() && after.is_some() { self.share } else { 1.0 };
+        (after.unwrap_or(here) - before.unwrap_or(here)) * length
+    }
+
+    /// A piece; the first of all begins with this direction.
+    fn piece(&self, index: usize, begins_m: Vector3<f64>) -> Option<Piece> {
+        let from_tangent_m = if index == 0 { begins_m } else { self.tangent_m(index) };
+        let tangents_m = [from_tangent_m, self.tangent_m(index + 1)];
+        Some(Piece::new(*self.nodes_m.get(index)?, *self.nodes_m.get(index + 1)?, tangents_m))
+    }
+}
+
+/// Places along a curve that begins and ends at rest, for each of its pieces: behind its beginning, up to its end, NED, m.
+pub fn curve_m(from_m: Vector3<f64>, ahead_m: &[Vector3<f64>]) -> Vec<Vec<Vector3<f64>>> {
+    let nodes = Nodes::new(from_m, ahead_m, Bend::Wide);
+    let pieces = (0..ahead_m.len()).filter_map(|index| nodes.piece(index, nodes.tangent_m(0)));
+    let along = |piece: Piece| (1..=PARTS).map(|part| piece.position_m(part as f64 / PARTS as f64)).collect();
+    pieces.map(along).collect()
+}
+
 impl Spline {
     /// The piece from a place to the first of the places ahead; what is behind that is flown through without a stop, up to the last of
     /// them. Onward from a piece it begins with the motion at its end, else at rest. `None` without a place ahead.
@@ -148,42 +191,23 @@ impl Spline {
         bend: Bend,
         limits: &Limits,
     ) -> Option<Self> {
-        let share = match bend {
-            Bend::Wide => 1.0,
-            Bend::Close => 0.5,
-        };
-        let first_m = *ahead_m.first()?;
-        let mut nodes_m = vec![from_m];
-        nodes_m.extend(ahead_m);
-        // At a stop the direction is that of the way.
-        let tangent_m = |index: usize| {
-            let [before, here, after] = [index.checked_sub(1), Some(index), Some(index + 1)]
-                .map(|index| nodes_m.get(index?).copied());
-            let here = here.unwrap_or(first_m);
-            let length = if before.is_some() && after.is_some() { share } else { 1.0 };
-            (after.unwrap_or(here) - before.unwrap_or(here)) * length
-        };
-        let begins_m = onward.map_or(first_m - from_m, |onward| onward.tangent_m);
-        let piece = |index: usize| {
-            let from_tangent_m = if index == 0 { begins_m } else { tangent_m(index) };
-            let tangents_m = [from_tangent_m, tangent_m(index + 1)];
-            Some(Piece::new(*nodes_m.get(index)?, *nodes_m.get(index + 1)?, tangents_m))
-        };
+        let nodes = Nodes::new(from_m, ahead_m, bend);
+        let begins_m = onward.map_or(nodes.tangent_m(0), |onward| onward.tangent_m);
         // From the last piece back: each must leave room to brake for the next.
         let mut fastest_m_s = [0.0; PARTS + 1];
         let mut end_m_s = 0.0;
         for index in (0..ahead_m.len()).rev() {
-            fastest_m_s = piece(index)?.plan(end_m_s, limits);
+            fastest_m_s = nodes.piece(index, begins_m)?.plan(end_m_s, limits);
             [end_m_s, ..] = fastest_m_s;
         }
-        let piece = piece(0)?;
+        let piece = nodes.piece(0, begins_m)?;
         let past_m = onward.map_or(0.0, |onward| onward.past_m);
         Some(Self {
             piece,
             fastest_m_s,
             u: past_m / piece.rate_m(0.0),
             speed_m_s: onward.map_or(0.0, |onward| onward.speed_m_s),
-            onward_m: tangent_m(1),
+            onward_m: nodes.tangent_m(1),
             goes_on: ahead_m.len() > 1,
         })
     }

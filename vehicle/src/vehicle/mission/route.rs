@@ -107,15 +107,7 @@ impl<'a> Route<'a> {
 
     /// Whether the way to a step's place follows the ground.
     pub fn follows_ground(&self, step: &Navigate) -> bool {
-        let place = match step {
-            Navigate::Waypoint(_)
-            | Navigate::Loiter { .. }
-            | Navigate::LoiterTime { .. }
-            | Navigate::LoiterTurns(_)
-            | Navigate::PlacePayload { .. } => step.place(),
-            _ => None,
-        };
-        !self.terrain.is_flat() && place.is_some_and(Place::is_above_ground)
+        follows_ground(step, self.terrain)
     }
 
     /// Places ahead on ways that follow the ground, up to the first at which the vehicle rests: from `here_m` on the present step's,
@@ -241,4 +233,17 @@ impl<'a> Route<'a> {
         };
         own_m.unwrap_or(self.radius_m)
     }
+}
+
+/// Whether the way to a step's place follows the ground.
+pub fn follows_ground(step: &Navigate, terrain: &Terrain) -> bool {
+    let place = match step {
+        Navigate::Waypoint(_)
+        | Navigate::Loiter { .. }
+        | Navigate::LoiterTime { .. }
+        | Navigate::LoiterTurns(_)
+        | Navigate::PlacePayload { .. } => step.place(),
+        _ => None,
+    };
+    !terrain.is_flat() && place.is_some_and(Place::is_above_ground)
 }
