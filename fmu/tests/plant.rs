@@ -234,6 +234,7 @@ proptest! {
             rotor_rad_s: [0.0; 4],
             wrench: Wrench::default(),
             disturbance: Disturbance::default(),
+            ground_z_m: 0.0,
             ..commands
         };
         let mut directions: Vec<(&str, Seed<QuadrotorPlant>)> = Vec::new();
@@ -266,6 +267,7 @@ proptest! {
                         torque_n_m: add(c.torque_n_m, d.torque_n_m),
                         wind_m_s: add(c.wind_m_s, d.wind_m_s),
                     },
+                    ground_z_m: commands.ground_z_m + h * seed.inputs.ground_z_m,
                     ..commands
                 };
                 read(&equations().outputs(&moved, &inputs))

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::configuration::validation::validate_plant;
+use crate::configuration::validation::{validate_plant, validate_start_over};
 use crate::control::instants::LATEST_US;
 use crate::schedule::next_point_us;
 use crate::{
@@ -35,13 +35,14 @@ impl PlantSimulation {
     ///
     /// # Errors
     /// [`ConfigurationError`] when a value of the airframe, the environment or the start is out of range, or they contradict
-    /// one another; whether controllers could fly it does not matter.
+    /// one another, or the start is below the ground of the inputs; whether controllers could fly it does not matter.
     pub fn new(
         configuration: &Configuration,
         start: &PlantState,
         inputs: &PlantInputs,
     ) -> Result<Self, ConfigurationError> {
         let state = PlantSimulationState { time_us: 0, event_us: 0, plant: *start, inputs: *inputs };
+        validate_start_over(configuration, inputs.ground_z_m)?;
         Self::from_state(configuration, state)
     }
 

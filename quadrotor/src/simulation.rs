@@ -1,6 +1,7 @@
 //! The closed loop as a deterministic discrete-event simulation.
 
 use crate::attitude::wrapped;
+use crate::configuration::validation::validate_start_over;
 use crate::design::prepared_design::PreparedDesign;
 use crate::schedule::next_point_us;
 use crate::sensors::SimulatedSensors;
@@ -45,9 +46,10 @@ impl Simulation {
     /// ```
     ///
     /// # Errors
-    /// [`ConfigurationError::Measurement`].
+    /// [`ConfigurationError::Measurement`], and [`ConfigurationError::BelowGround`] over the ground of the inputs.
     pub fn prepared(prepared: &PreparedDesign, inputs: &Inputs) -> Result<Self, ConfigurationError> {
         let configuration = prepared.configuration();
+        validate_start_over(configuration, inputs.ground_z_m)?;
         let mut world = World::new(configuration, inputs);
         let mut sensors = sensors(&configuration.sensors, &mut world);
         let control = ControlLoop::prepared(prepared, &inputs.control(), &mut sensors, 0)?;

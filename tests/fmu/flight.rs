@@ -154,6 +154,7 @@ fn eventful_flight_is_the_engines() {
         inputs.disturbance.force_n = [0.3, -0.2, 0.1].into();
         inputs.disturbance.torque_n_m = [0.01, -0.01, 0.005 * time_s].into();
         inputs.disturbance.wind_m_s = [3.0, -1.0, 0.5 * time_s].into();
+        inputs.ground_z_m = -0.2 * time_s;
         inputs.armed = time_s < 4.0;
         inputs
     };
@@ -207,8 +208,12 @@ fn set(instance: &mut Instance, inputs: &Inputs) {
         assert_eq!(instance.set_real(&values), OK);
     }
     let reference = &inputs.reference;
-    let yaw = [("reference.yaw", reference.yaw_rad), ("reference.yaw_rate", reference.yaw_rate_rad_s)];
-    assert_eq!(instance.set_real(&yaw), OK);
+    let others = [
+        ("reference.yaw", reference.yaw_rad),
+        ("reference.yaw_rate", reference.yaw_rate_rad_s),
+        ("ground.z", inputs.ground_z_m),
+    ];
+    assert_eq!(instance.set_real(&others), OK);
     assert_eq!(instance.set_boolean(&[("armed", inputs.armed)]), OK);
 }
 

@@ -19,6 +19,7 @@ PROMISED = {
         *(f"disturbance.{kind}.{axis}" for kind in ("force", "torque") for axis in "xyz"),
         *(f"wind.velocity.{axis}" for axis in "xyz"),
         "armed",
+        "ground.z",
     ],
     "output": [
         *(f"{kind}.{axis}" for kind in ("position", "velocity", "acceleration", "tracking_error") for axis in "xyz"),

@@ -170,7 +170,7 @@ def test_derivatives_are_the_papers_euler_form(exchanged, description):
 
 def test_casadi_takes_it_and_its_jacobian_is_that_of_differences(folder):
     builder = casadi.DaeBuilder("plant", str(folder))
-    assert (len(builder.x()), len(builder.u())) == (18, 17)
+    assert (len(builder.x()), len(builder.u())) == (18, 18)
     function = builder.create("f", ["x", "u"], ["ode", "y"])
     jacobian = function.factory("jacobian", ["x", "u"], ["jac:ode:x", "jac:ode:u", "jac:y:x", "jac:y:u"])
     u = np.array([float(value) for value in builder.start(builder.u())])

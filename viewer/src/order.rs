@@ -26,8 +26,10 @@ pub enum Action {
     StartMission {},
     /// Fly to a place and hold there.
     FlyTo {
-        /// NED, m.
-        position_m: [f64; 3],
+        /// North and east, m.
+        place_m: [f64; 2],
+        /// Above the ground there, m.
+        height_m: f64,
     },
     /// Break a unit, or repair it.
     Fault {

@@ -33,6 +33,8 @@ pub struct VehicleScene {
 pub struct Waypoint {
     /// Number of its item.
     pub item: usize,
+    /// Places on the way there, from the one before it on.
+    pub through_m: Vec<[f64; 3]>,
     /// Where.
     pub position_m: [f64; 3],
 }
@@ -77,6 +79,6 @@ pub struct ObstacleScene {
     pub name: String,
     /// Corners of its ground plan, north and east, m.
     pub corners_m: Vec<[f64; 2]>,
-    /// Its lower and its upper end above the ground, m.
+    /// Its lower and its upper end above the origin, m: what is in the ground is left out.
     pub heights_m: [f64; 2],
 }

@@ -181,7 +181,8 @@ fn strangers_get_nothing() {
 fn orders_need_the_token_and_are_answered() {
     let viewer = viewer();
     let mut browser = our_browser(&viewer);
-    let order = r#"{"order": 7, "vehicle": 1, "please": {"action": "fly_to", "position_m": [1, 2, -3]}}"#;
+    let order =
+        r#"{"order": 7, "vehicle": 1, "please": {"action": "fly_to", "place_m": [1, 2], "height_m": 3}}"#;
     send(&mut browser, order);
     let answer = next_text(&mut browser, "answer");
     assert!(
@@ -200,7 +201,7 @@ fn orders_need_the_token_and_are_answered() {
     assert_eq!(next_text(&mut browser, "controls")["controls"], true);
     send(&mut browser, order);
     let Order { vehicle, action, reply } = next_order(&viewer);
-    assert_eq!((vehicle, action), (1, Action::FlyTo { position_m: [1.0, 2.0, -3.0] }));
+    assert_eq!((vehicle, action), (1, Action::FlyTo { place_m: [1.0, 2.0], height_m: 3.0 }));
     reply.send(Err("too far".to_owned()));
     let answer = next_text(&mut browser, "answer");
     assert!(answer["answer"] == 7 && answer["refused"] == "too far", "{answer}");

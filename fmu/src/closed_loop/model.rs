@@ -40,6 +40,7 @@ impl Model for ClosedLoop {
         &numbers::airframe(),
         &numbers::controllers(),
         &figures::figures(),
+        &inputs::GROUND,
     ];
     const ARRAYS: &'static [&'static [Array]] = &[
         arrays::REFERENCE,

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Controller, MeasuredMotion};
 use crate::quantities::{ANGLE, ANGULAR_VELOCITY, NUMBER, POSITION, ROTOR_SPEED, VELOCITY};
+use crate::tables::ground::{self, Grounded};
 use crate::tables::references::{self, Commanded};
 
 /// What is asked for, and what is measured.
@@ -18,20 +19,26 @@ pub struct ControllerInputs {
     pub armed: bool,
     /// The motion of the vehicle.
     pub measured: MeasuredMotion,
+    /// z of the ground below the vehicle, NED, m.
+    pub ground_z_m: f64,
 }
 
 /// The reference of the closed loop's default flight, and a vehicle in hover at the origin.
 impl Default for ControllerInputs {
     fn default() -> Self {
-        let Inputs { reference, armed, .. } = Inputs::default();
-        Self { reference, armed, measured: MeasuredMotion::default() }
+        let Inputs { reference, armed, ground_z_m, .. } = Inputs::default();
+        Self { reference, armed, measured: MeasuredMotion::default(), ground_z_m }
     }
 }
 
 impl ControllerInputs {
     /// What the control loop is asked for.
     pub(super) fn control(&self) -> ControlInputs {
-        ControlInputs { armed: self.armed, ..ControlInputs::armed(Target::Reference(self.reference)) }
+        ControlInputs {
+            armed: self.armed,
+            ground_z_m: self.ground_z_m,
+            ..ControlInputs::armed(Target::Reference(self.reference))
+        }
     }
 }
 
@@ -50,6 +57,16 @@ impl Commanded for ControllerInputs {
 
     fn set_armed(&mut self, armed: bool) {
         self.armed = armed;
+    }
+}
+
+impl Grounded for ControllerInputs {
+    fn ground_z_m(&self) -> f64 {
+        self.ground_z_m
+    }
+
+    fn set_ground_z_m(&mut self, ground_z_m: f64) {
+        self.ground_z_m = ground_z_m;
     }
 }
 
@@ -100,6 +117,11 @@ pub(super) const MEASURED: [Variable<Controller>; 20] = [
 
 /// Whether the rotors turn.
 pub(super) const ARMED: [Variable<Controller>; 1] = references::armed();
+
+/// What the vehicle flies above.
+pub(super) const GROUND: [Variable<Controller>; 1] = ground::ground(
+    "Height of the ground below the vehicle, down: -5 is a plateau 5 m above the origin; nothing is learned of a flight close to it",
+);
 
 /// What is measured, as vectors.
 #[rustfmt::skip]

@@ -136,6 +136,7 @@ impl Model for Controller {
         &numbers::controllers(),
         &measurement::NUMBERS,
         &figures::figures(),
+        &inputs::GROUND,
     ];
     const ARRAYS: &'static [&'static [Array]] = &[
         arrays::REFERENCE,

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::settings::Drive;
 use crate::tables::disturbances::Disturbed;
+use crate::tables::ground::Grounded;
 
 /// All inputs. What drives the vehicle is chosen by a parameter; the other command has no effect.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,6 +18,8 @@ pub struct Commands {
     pub failed: [bool; 4],
     /// Wind, force and torque.
     pub disturbance: Disturbance,
+    /// z of the ground below, NED, m.
+    pub ground_z_m: f64,
 }
 
 /// A slow climb: 7.3 N for a weight of 6.9 N.
@@ -27,6 +30,7 @@ impl Default for Commands {
             wrench: Wrench { thrust_n: 7.3, ..Wrench::default() },
             failed: [false; 4],
             disturbance: Disturbance::default(),
+            ground_z_m: 0.0,
         }
     }
 }
@@ -41,6 +45,16 @@ impl Disturbed for Commands {
     }
 }
 
+impl Grounded for Commands {
+    fn ground_z_m(&self) -> f64 {
+        self.ground_z_m
+    }
+
+    fn set_ground_z_m(&mut self, ground_z_m: f64) {
+        self.ground_z_m = ground_z_m;
+    }
+}
+
 impl Commands {
     /// What acts on the plant.
     pub(super) fn acting(&self, drive: Drive) -> PlantInputs {
@@ -51,7 +65,7 @@ impl Commands {
             },
             disturbance: self.disturbance,
             rotor_faults: self.failed.map(|failed| failed.then_some(RotorFault::Off)),
-            ground_z_m: 0.0,
+            ground_z_m: self.ground_z_m,
         }
     }
 }

@@ -110,8 +110,16 @@ impl Continuous<QuadrotorPlant> for Equations {
 }
 
 /// What the thrust and the torques of the rotors, or those in their place, depend on.
-const THRUST: &[&str] =
-    &["position.z", "velocity.", "attitude.", "body_rate.", "rotor.speed", "command.", "wind.velocity."];
+const THRUST: &[&str] = &[
+    "position.z",
+    "velocity.",
+    "attitude.",
+    "body_rate.",
+    "rotor.speed",
+    "command.",
+    "wind.velocity.",
+    "ground.z",
+];
 /// What the acceleration depends on.
 const FORCES: &[&str] = &[
     "position.z",
@@ -122,6 +130,7 @@ const FORCES: &[&str] = &[
     "command.thrust",
     "disturbance.force.",
     "wind.velocity.",
+    "ground.z",
 ];
 /// What the angular acceleration depends on; with rotors that have an inertia also on how they speed up.
 const TORQUES: &[&str] = &[
@@ -134,6 +143,7 @@ const TORQUES: &[&str] = &[
     "command.",
     "disturbance.",
     "wind.velocity.",
+    "ground.z",
 ];
 
 /// A state depends on itself alone.

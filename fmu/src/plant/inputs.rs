@@ -5,7 +5,7 @@ use fmi::variables::{Array, Field, Variable};
 
 use super::QuadrotorPlant;
 use crate::quantities::{FORCE, ROTOR_SPEED, TORQUE};
-use crate::tables::disturbances;
+use crate::tables::{disturbances, ground};
 
 /// A real input within [minimum, maximum], at a field of [`super::Commands`].
 macro_rules! real {
@@ -56,6 +56,9 @@ pub(super) const COMMANDS: [Variable<QuadrotorPlant>; 12] = [
 
 /// What pushes it.
 pub(super) const DISTURBANCE: [Variable<QuadrotorPlant>; 9] = disturbances::disturbance();
+
+/// What it stands on.
+pub(super) const GROUND: [Variable<QuadrotorPlant>; 1] = ground::ground(ground::OF_PLANT);
 
 /// What drives it, as vectors.
 #[rustfmt::skip]

@@ -56,6 +56,7 @@ impl Model for QuadrotorPlant {
         &parameters::TABLE,
         &numbers::airframe(),
         &parameters::NUMBERS,
+        &inputs::GROUND,
     ];
     const ARRAYS: &'static [&'static [Array]] = &[
         inputs::ARRAYS,

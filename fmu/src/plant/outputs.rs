@@ -30,6 +30,7 @@ const FORCES: &[&str] = &[
     "command.thrust",
     "disturbance.force.",
     "wind.velocity.",
+    "ground.z",
     "environment.",
     "initial.",
 ];
@@ -41,6 +42,7 @@ const TORQUES: &[&str] = &[
     "command.",
     "disturbance.",
     "wind.velocity.",
+    "ground.z",
     "environment.",
     "initial.",
 ];

@@ -6,6 +6,7 @@
 pub(crate) mod arrays;
 pub(crate) mod disturbances;
 pub(crate) mod figures;
+pub(crate) mod ground;
 pub(crate) mod identity;
 pub(crate) mod motion;
 pub(crate) mod numbers;

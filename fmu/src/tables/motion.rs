@@ -98,8 +98,16 @@ const ROTOR_SPEEDS: &[&str] = &[
     "airframe.rotor.thrust_coefficient",
 ];
 // Of rotors in moving air, and close to the ground.
-const WRENCH: &[&str] =
-    &["armed", "actuation", "command.", "airframe.", "wind.velocity.", "environment.", "initial."];
+const WRENCH: &[&str] = &[
+    "armed",
+    "actuation",
+    "command.",
+    "airframe.",
+    "wind.velocity.",
+    "ground.z",
+    "environment.",
+    "initial.",
+];
 const BATTERY: &[&str] = &[
     "armed",
     "actuation",
@@ -117,6 +125,7 @@ const ACCELERATIONS: &[&str] = &[
     "airframe.",
     "disturbance.force.",
     "wind.velocity.",
+    "ground.z",
     "environment.",
     "initial.",
 ];

@@ -14,9 +14,9 @@ pub(crate) const REFERENCE: Terminal = Terminal {
 /// What pushes the vehicle.
 pub(crate) const DISTURBANCE: Terminal = Terminal {
     name: "disturbance",
-    description: "Force, torque and wind that act on the vehicle",
+    description: "Force, torque, wind and ground that act on the vehicle",
     matching: Matching::Bus,
-    variables: &["disturbance.", "wind."],
+    variables: &["disturbance.", "wind.", "ground."],
     prefix: "disturbance.",
 };
 

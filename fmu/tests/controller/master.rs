@@ -53,7 +53,8 @@ pub fn measured(state: &PlantState) -> MeasuredMotion {
 
 /// What the controllers get of the closed loop's inputs.
 pub fn with_measured(inputs: &Inputs, measured: MeasuredMotion) -> ControllerInputs {
-    ControllerInputs { reference: inputs.reference, armed: inputs.armed, measured }
+    let Inputs { reference, armed, ground_z_m, .. } = *inputs;
+    ControllerInputs { reference, armed, measured, ground_z_m }
 }
 
 /// The plant that begins where a configuration says.

@@ -45,6 +45,7 @@ impl Commands {
         PlantInputs {
             disturbance: self.flight.disturbance,
             rotor_faults: if self.flight.armed { self.flight.rotor_faults } else { [None; 4] },
+            ground_z_m: self.flight.ground_z_m,
             ..PlantInputs::rotor_speeds(command)
         }
     }

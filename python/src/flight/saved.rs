@@ -9,7 +9,7 @@ use super::commands::Commands;
 use crate::errors::ArgumentError;
 
 /// How saved vehicles begin; the last byte is raised whenever their layout changes.
-const MAGIC: [u8; 8] = *b"LMPCPY\0\x01";
+const MAGIC: [u8; 8] = *b"LMPCPY\0\x02";
 
 /// Everything there is to save of a vehicle.
 #[derive(Clone, Serialize, Deserialize)]

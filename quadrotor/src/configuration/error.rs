@@ -3,7 +3,8 @@
 use lmpc::DesignError;
 use thiserror::Error;
 
-use alloc::string::ToString;
+use alloc::format;
+use alloc::string::{String, ToString};
 
 use crate::{Cause, NoiseEffect, Quantity, ValueRange};
 
@@ -16,6 +17,11 @@ fn rounded(mass_kg: f64, to: fn(f64) -> f64) -> f64 {
     let digits = 2.0 - (libm::floor(libm::log10(mass_kg)) + 1.0).min(0.0);
     let scale = libm::pow(10.0, digits);
     to(mass_kg * scale) / scale
+}
+
+/// Where the ground is, unless it is at the height of the origin.
+fn height_of(ground_z_m: f64) -> String {
+    if ground_z_m == 0.0 { String::new() } else { format!(" at ground.z = {ground_z_m} m") }
 }
 
 /// Why a configuration was refused. Nothing has changed then.
@@ -122,14 +128,17 @@ pub enum ConfigurationError {
     },
     /// The flight would start below the ground, which would throw the vehicle up.
     #[error(
-        "initial.position.z = {z_m} m is below the ground (z points down); with environment.ground_plane = true and this \
-         initial attitude, allowed up to {greatest_m:.3} m"
+        "initial.position.z = {z_m} m is below the ground{} (z points down); with environment.ground_plane = true and this \
+         initial attitude, allowed up to {greatest_m:.3} m",
+        height_of(*ground_z_m)
     )]
     BelowGround {
         /// Initial position down, m.
         z_m: f64,
         /// Greatest allowed value, at which the lowest foot touches the ground, m.
         greatest_m: f64,
+        /// z of the ground below the start, NED, m.
+        ground_z_m: f64,
     },
     /// A preset that has not been applied.
     #[error("airframe.preset = {name} is not applied; fly Configuration::resolved()")]

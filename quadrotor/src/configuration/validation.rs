@@ -247,12 +247,24 @@ fn validate_spin(configuration: &Configuration, torques_n_m: [f64; 3]) -> Result
 
 /// A flight over ground starts above it, in the attitude that it starts with.
 fn validate_start(configuration: &Configuration) -> Result<(), ConfigurationError> {
-    if !configuration.environment.ground_plane {
+    validate_start_over(configuration, 0.0)
+}
+
+/// The same over ground at a height, `ground_z_m`, NED. One that is not finite is refused by the first step.
+pub(crate) fn validate_start_over(
+    configuration: &Configuration,
+    ground_z_m: f64,
+) -> Result<(), ConfigurationError> {
+    if !configuration.environment.ground_plane || !ground_z_m.is_finite() {
         return Ok(());
     }
     let [_, _, z_m] = configuration.initial.position_m;
-    let greatest_m = greatest_start_z_m(&configuration.airframe, &configuration.initial);
-    if z_m <= greatest_m { Ok(()) } else { Err(ConfigurationError::BelowGround { z_m, greatest_m }) }
+    let greatest_m = greatest_start_z_m(&configuration.airframe, &configuration.initial, ground_z_m);
+    if z_m <= greatest_m {
+        Ok(())
+    } else {
+        Err(ConfigurationError::BelowGround { z_m, greatest_m, ground_z_m })
+    }
 }
 
 /// The attitude controller is the inner one: it is the fastest.

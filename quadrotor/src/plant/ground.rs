@@ -122,13 +122,13 @@ fn slip_m_s<T: Valued>(body: &RigidBody<T>, reach_m: f64) -> f64 {
     velocity_m_s.xy().norm() + libm::fabs(body.body_rate_rad_s.z.value()) * reach_m
 }
 
-/// The greatest z, NED, m, from which a flight can start above ground at z = 0 with this initial attitude: there the lowest foot
+/// The greatest z, NED, m, from which a flight can start above ground at `ground_z_m` with this initial attitude: there the lowest foot
 /// touches the ground. In whole millimetres, so that what a message prints is allowed.
-pub(crate) fn greatest_start_z_m(airframe: &Airframe, initial: &InitialState) -> f64 {
+pub(crate) fn greatest_start_z_m(airframe: &Airframe, initial: &InitialState, ground_z_m: f64) -> f64 {
     let rotation = PlantState::at_rest(initial).body.rotation();
     let lowest_foot_m =
         feet(airframe).iter().map(|foot| (rotation * foot).z).fold(f64::NEG_INFINITY, f64::max);
-    libm::floor(1e3 * (DEEPEST_START_M - lowest_foot_m)) / 1e3
+    libm::floor(1e3 * (ground_z_m + DEEPEST_START_M - lowest_foot_m)) / 1e3
 }
 
 /// Whether no foot can touch the ground in any attitude.

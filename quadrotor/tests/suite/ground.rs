@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use quadrotor::{
     Airframe, Configuration, ConfigurationError, Disturbance, Environment, GRAVITY_M_S2, InitialState,
-    Inputs, Plant, PlantInputs, PlantState, RotorLayout, Simulation, Wrench,
+    Inputs, Plant, PlantInputs, PlantSimulation, PlantState, RotorLayout, Simulation, Wrench,
 };
 
 /// μ of the ground.
@@ -151,7 +151,9 @@ fn a_start_below_the_ground_is_refused_with_the_allowed_range() {
         [(1.0, [0.0; 3]), (0.011, [0.0; 3]), (0.0, [0.0, 0.2, 1.0]), (1e6, [1.0, 0.5, 0.0])]
     {
         let error = Simulation::new(&over_ground(z_m, attitude_rad), &Inputs::default()).unwrap_err();
-        let ConfigurationError::BelowGround { z_m: refused_m, greatest_m } = error else { panic!("{error}") };
+        let ConfigurationError::BelowGround { z_m: refused_m, greatest_m, .. } = error else {
+            panic!("{error}")
+        };
         assert_eq!(refused_m, z_m);
         assert!(Simulation::new(&over_ground(greatest_m, attitude_rad), &Inputs::default()).is_ok());
         // Without ground there is nothing to start below.
@@ -182,6 +184,30 @@ fn an_allowed_start_does_not_throw_the_vehicle_up() {
             assert!(risen_m < 0.02, "{attitude_rad:?}: {risen_m} m after {ms} ms");
         }
     }
+}
+
+/// On ground with a height, the deepest start is that of flat ground, as much higher or lower as the ground is.
+#[test]
+fn a_flight_does_not_start_below_raised_ground() {
+    let begin = |z_m: f64| {
+        let inputs = Inputs { ground_z_m: PLATEAU_Z_M, ..Inputs::default() };
+        Simulation::new(&over_ground(z_m, [0.0; 3]), &inputs).map(drop)
+    };
+    assert_eq!(begin(PLATEAU_Z_M), Ok(()));
+    let refused = begin(0.0).expect_err("twelve metres deep");
+    let ConfigurationError::BelowGround { greatest_m, .. } = refused else { panic!("{refused}") };
+    assert!((greatest_m - PLATEAU_Z_M - 0.01).abs() < 1.1e-3, "{greatest_m}");
+    assert_eq!(begin(greatest_m), Ok(()));
+    let expected = "initial.position.z = 0 m is below the ground at ground.z = -12 m (z points down); with \
+        environment.ground_plane = true and this initial attitude, allowed up to -11.990 m";
+    assert_eq!(refused.to_string(), expected);
+    let configuration = over_ground(0.0, [0.0; 3]);
+    let plant = PlantSimulation::new(
+        &configuration,
+        &PlantState::at_rest(&configuration.initial),
+        &over_plateau(PlantInputs::default()),
+    );
+    assert_eq!(plant.map(drop), Err(refused));
 }
 
 /// z of the top of a plateau, m.

@@ -88,7 +88,7 @@ pub struct Arguments {
     )]
     pub accept_signing_setup: Option<bool>,
 
-    /// UDP port that hears a pilot's radio
+    /// UDP port for a pilot's radio
     ///
     /// Datagrams have 8 or 16 pulses of 16 bits, µs, the lowest byte first, as ArduPilot's SITL receives them on its port 5501. The
     /// last pulses stay until others come. Further vehicles have a port each, 10 apart; 0 is any free port. The port is open to
@@ -153,11 +153,11 @@ pub struct Arguments {
 
     /// Arm and start the mission at once [default: false]
     ///
-    /// The vehicle arms and starts the mission of --mission as soon as the vehicle is ready. A pilot who arms or chooses
-    /// another mode takes over.
+    /// The vehicle arms and starts the mission of --mission as soon as it is ready. A pilot who arms or chooses another mode
+    /// takes over.
     #[arg(
         long, env = "LMPC_SITL_AUTOSTART", value_name = "true|false", num_args = 0..=1,
-        default_missing_value = "true", help_heading = VEHICLE, hide_possible_values = true
+        default_missing_value = "true", help_heading = VEHICLE
     )]
     pub autostart: Option<bool>,
 
@@ -224,7 +224,7 @@ pub struct Arguments {
     #[arg(long, env = "LMPC_SITL_DURATION", value_name = "SECONDS", value_parser = number(0.0, 1e9), allow_hyphen_values = true, help_heading = SIMULATION, hide_short_help = true)]
     pub duration: Option<f64>,
 
-    /// Seed of everything random [default: 1]
+    /// Seed for everything random [default: 1]
     #[arg(long, env = "LMPC_SITL_SEED", value_name = "N", value_parser = non_negative, allow_negative_numbers = true, help_heading = SIMULATION, hide_short_help = true)]
     pub seed: Option<u64>,
 
@@ -265,10 +265,10 @@ pub struct Arguments {
     )]
     pub kalman: Option<bool>,
 
-    /// Obstacles around the vehicles (TOML)
+    /// Ground with heights, and obstacles (TOML)
     ///
-    /// Boxes, cylinders and walls: see "Obstacles and traffic" in the book. A lidar and a downward rangefinder measure them, and
-    /// a vehicle that touches one ends its flight.
+    /// Hills or a grid of heights; boxes, cylinders and walls. A downward rangefinder measures both, a lidar the obstacles. A
+    /// vehicle that touches an obstacle ends its flight. [default: flat ground without obstacles]
     #[arg(long, env = "LMPC_SITL_WORLD", value_name = "FILE.toml", help_heading = SIMULATION, hide_short_help = true)]
     pub world: Option<PathBuf>,
 

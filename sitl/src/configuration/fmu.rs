@@ -61,6 +61,12 @@ pub(super) fn check(
         );
         notes.push(note(Severity::Warning, text));
     }
+    if !vehicle.surroundings.terrain.is_flat() && !mapping.takes(crate::fmu::GROUND) {
+        let text = format!(
+            "the FMU {name} has no input for the height of the ground (ground.z): it stands on ground of its own, whatever --world says"
+        );
+        notes.push(note(Severity::Warning, text));
+    }
     Ok(notes)
 }
 

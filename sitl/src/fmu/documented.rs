@@ -17,7 +17,7 @@ fn cell(group: &Group) -> String {
 
 #[test]
 fn the_tables_have_every_signal_with_unit_meaning_and_default_names() {
-    for (title, groups) in [("## Inputs", &INPUTS), ("## Outputs", &OUTPUTS)] {
+    for (title, groups) in [("## Inputs", INPUTS.as_slice()), ("## Outputs", OUTPUTS.as_slice())] {
         let section =
             PAGE.split(title).nth(1).and_then(|text| text.split("\n## ").next()).expect("a section");
         let rows = section.lines().filter(|line| line.starts_with("| `")).count();

@@ -25,7 +25,7 @@ const LINES: f64 = 50.0;
 const LINES_PER_S: f64 = 5.0;
 
 /// Values of all signals: groups, and their parts.
-type Values = [[f64; 4]; 9];
+type Values = [[f64; 4]; 10];
 
 /// An FMU in a process of its own.
 #[derive(Debug)]
@@ -52,7 +52,8 @@ impl FlownFmu {
         let configuration = settings.flown_configuration();
         let (fmu, mapping) = choice.open(&configuration)?;
         let place_m = Vector3::from(configuration.initial.position_m);
-        let demand = resting(place_m, settings.heading_rad);
+        let ground_z_m = settings.surroundings.terrain.z_below_m(&place_m);
+        let demand = resting(place_m, settings.heading_rad, ground_z_m);
         let inputs = values_of(&mapping, &demand);
         let of = |channel: &super::mapping::Channel| {
             (channel.variable.1, channel.conversion.theirs(value_at(&inputs, channel.group, channel.part)))
@@ -143,7 +144,7 @@ fn failed(error: &GuestError, time_us: u64) -> FlightError {
 }
 
 /// What an FMU is told before the flight.
-fn resting(place_m: Vector3<f64>, heading_rad: f64) -> Demand {
+fn resting(place_m: Vector3<f64>, heading_rad: f64, ground_z_m: f64) -> Demand {
     Demand {
         time_us: 0,
         duration_us: 0,
@@ -152,6 +153,7 @@ fn resting(place_m: Vector3<f64>, heading_rad: f64) -> Demand {
         rotor_command_rad_s: [0.0; 4],
         wrench: Wrench::default(),
         wind_m_s: Vector3::zeros(),
+        ground_z_m,
     }
 }
 
@@ -175,6 +177,7 @@ fn values_of(mapping: &Mapping, demand: &Demand) -> Values {
     values[input::THRUST] = alone(demand.wrench.thrust_n);
     values[input::TORQUE] = of(axes.in_their_body(demand.wrench.torque_n_m));
     values[input::WIND] = of(axes.in_their_world(demand.wind_m_s));
+    values[input::GROUND] = alone(axes.their_place_m(Vector3::z() * demand.ground_z_m).z);
     values
 }
 
@@ -364,4 +367,4 @@ impl Log {
 }
 
 /// One place for each group.
-const _: () = assert!(INPUTS.len() == 9 && OUTPUTS.len() == 9);
+const _: () = assert!(INPUTS.len() <= 10 && OUTPUTS.len() <= 10);

@@ -10,7 +10,7 @@ pub fn listing(mapping: &Mapping) -> String {
     let mut text = format!("{}: flies as the {}\n", mapping.model_name, mapping.role);
     let mut rows = vec![["signal", "unit", "variable", "its unit", "conversion"].map(str::to_owned)];
     for (title, groups, channels) in
-        [("inputs", &INPUTS, &mapping.inputs), ("outputs", &OUTPUTS, &mapping.outputs)]
+        [("inputs", INPUTS.as_slice(), &mapping.inputs), ("outputs", OUTPUTS.as_slice(), &mapping.outputs)]
     {
         rows.push([format!("[{title}]"), String::new(), String::new(), String::new(), String::new()]);
         for (index, group) in groups.iter().enumerate() {

@@ -26,5 +26,5 @@ pub use flown::FlownFmu;
 pub use listing::listing;
 pub use map::Map;
 pub use mapping::Mapping;
-/// The group of the wind among the inputs.
-pub use signals::input::WIND;
+/// The groups of the wind and of the ground among the inputs.
+pub use signals::input::{GROUND, WIND};

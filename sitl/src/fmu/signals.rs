@@ -55,7 +55,7 @@ const NEWTON_METRE: (Dimension, &str) = (TORQUE, "N.m");
 
 /// Real inputs, in the order in which [`Demand`](vehicle::foreign::Demand) is written into them.
 #[rustfmt::skip]
-pub const INPUTS: [Group; 9] = [
+pub const INPUTS: [Group; 10] = [
     group("reference.position", XYZ, METRE, &[("reference.position", DOTTED)], "where to be, along the world's axes"),
     group("reference.velocity", XYZ, METRE_PER_SECOND, &[("reference.velocity", DOTTED)], "velocity of the reference"),
     group("reference.acceleration", XYZ, METRE_PER_SECOND_SQUARED, &[("reference.acceleration", DOTTED)], "acceleration of the reference"),
@@ -65,6 +65,7 @@ pub const INPUTS: [Group; 9] = [
     group("thrust", &[], NEWTON, &[("thrust", ALONE), ("command.thrust", ALONE)], "thrust of all rotors, along the body's z axis away from the ground"),
     group("torque", XYZ, NEWTON_METRE, &[("torque", DOTTED), ("torque", [".phi", ".theta", ".psi", ""]), ("command.torque", [".phi", ".theta", ".psi", ""])], "torques of all rotors about the body's axes"),
     group("wind.velocity", XYZ, METRE_PER_SECOND, &[("wind.velocity", DOTTED)], "velocity of the air, along the world's axes"),
+    group("ground.z", &[], METRE, &[("ground.z", ALONE)], "height of the ground below the vehicle, along the world's z axis"),
 ];
 
 /// Indices into [`INPUTS`].
@@ -87,6 +88,8 @@ pub mod input {
     pub const TORQUE: usize = 7;
     /// Wind.
     pub const WIND: usize = 8;
+    /// Height of the ground.
+    pub const GROUND: usize = 9;
 }
 
 /// The Boolean input.

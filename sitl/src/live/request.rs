@@ -42,7 +42,7 @@ impl Request {
             Action::Return {} => simple(MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH),
             Action::Hold {} => simple(MavCmd::MAV_CMD_NAV_LOITER_UNLIM),
             Action::StartMission {} => start_mission(autopilot),
-            Action::FlyTo { position_m } => vec![fly_to(position_m, autopilot)?],
+            Action::FlyTo { place_m, height_m } => vec![fly_to(*place_m, *height_m, autopilot)?],
             Action::Fault { fault } => {
                 let fault: Fault = fault.parse().map_err(|error| format!("{error}"))?;
                 let [unit, kind, instance] = fault.numbers().map(|number| number as f32);
@@ -97,11 +97,18 @@ fn start_mission(autopilot: &Autopilot) -> Vec<MavMessage> {
     if autopilot.vehicle().is_armed() { vec![start] } else { vec![arm(system, true), start] }
 }
 
-fn fly_to(position_m: &[f64; 3], autopilot: &Autopilot) -> Result<MavMessage, String> {
-    for metres in position_m {
-        within(*metres, -FARTHEST_M, FARTHEST_M, "place", "m")?;
+fn fly_to(place_m: [f64; 2], height_m: f64, autopilot: &Autopilot) -> Result<MavMessage, String> {
+    for metres in place_m {
+        within(metres, -FARTHEST_M, FARTHEST_M, "place", "m")?;
     }
-    let place = autopilot.vehicle().frame().to_geodetic(&Vector3::from(*position_m));
+    within(height_m, -FARTHEST_M, FARTHEST_M, "height", "m")?;
+    let vehicle = autopilot.vehicle();
+    let [north_m, east_m] = place_m;
+    let place = vehicle.frame().to_geodetic(&Vector3::new(
+        north_m,
+        east_m,
+        vehicle.terrain().z_m(place_m) - height_m,
+    ));
     let degrees = |degrees: f64| (degrees * 1e7).round() as i32;
     // MAV_DO_REPOSITION_FLAGS_CHANGE_MODE: whatever it does now.
     Ok(MavMessage::COMMAND_INT(COMMAND_INT_DATA {

@@ -4,10 +4,9 @@ use std::f64::consts::TAU;
 
 use autopilot::Autopilot;
 use nalgebra::Vector3;
-use vehicle::Vehicle;
 use vehicle::fence::{Fence, Inclusions, Shape, Zone};
-use vehicle::plan::{PlanKind, compile};
-use vehicle::surroundings::{Obstacle, Shape as ObstacleShape};
+use vehicle::surroundings::{Obstacle, Shape as ObstacleShape, Terrain};
+use vehicle::{PlannedLeg, Vehicle};
 use viewer::{FenceScene, ObstacleScene, Scene, VehicleScene, Waypoint, ZoneScene};
 
 use super::ground::ground;
@@ -25,6 +24,7 @@ struct Outline {
     system_id: u8,
     rotors_m: [[f64; 3]; 4],
     home_m: Vector3<f64>,
+    takeoff_height_m: f64,
     /// Starts of the vehicle, and plans that were replaced since.
     plans: (u32, u32),
     fence: Option<FenceOutline>,
@@ -64,6 +64,7 @@ impl Outline {
             system_id: autopilot.system_id(),
             rotors_m: rotors_m(vehicle),
             home_m: vehicle.home().position_m,
+            takeoff_height_m: vehicle.conduct().takeoff_height_m,
             plans: (autopilot.boots(), vehicle.plans_revision()),
             fence,
         }
@@ -76,7 +77,9 @@ pub fn scene<'a>(autopilots: impl Iterator<Item = &'a Autopilot> + Clone) -> Sce
     let surroundings = first.map(|autopilot| &autopilot.settings().surroundings);
     Scene {
         vehicles: autopilots.map(of_one).collect(),
-        obstacles: surroundings.map(|all| all.obstacles.iter().map(obstacle).collect()).unwrap_or_default(),
+        obstacles: surroundings
+            .map(|all| all.obstacles.iter().map(|one| obstacle(one, &all.terrain)).collect())
+            .unwrap_or_default(),
         ground: surroundings.and_then(|all| ground(&all.terrain)),
     }
 }
@@ -93,29 +96,22 @@ fn of_one(autopilot: &Autopilot) -> VehicleScene {
         id: autopilot.system_id(),
         rotors_m: rotors_m(vehicle),
         home_m: vehicle.home().position_m.into(),
-        mission: mission(vehicle),
+        mission: vehicle.planned_way().iter().map(waypoint).collect(),
         fence: vehicle.fence().filter(Fence::bounds).map(|fence| fence_scene(&fence)),
     }
 }
 
-/// The places that the mission flies to. A height that an item leaves open is that of the one before it.
-fn mission(vehicle: &Vehicle) -> Vec<Waypoint> {
-    let items = vehicle.plans().get(PlanKind::Mission).items();
-    let program = compile::mission(items, &vehicle.site());
-    let home_m = vehicle.home().position_m;
-    let mut at_m = home_m;
-    let mut places = Vec::new();
-    for item in program.first()..program.len() {
-        let Some(navigate) = program.navigate(item) else { continue };
-        if let Some(place) = navigate.place() {
-            if let Some([north_m, east_m]) = place.horizontal_m {
-                (at_m.x, at_m.y) = (north_m, east_m);
-            }
-            at_m.z = place.down_m(home_m.z).unwrap_or(at_m.z);
-            places.push(Waypoint { item, position_m: at_m.into() });
-        }
+fn waypoint(leg: &PlannedLeg) -> Waypoint {
+    Waypoint {
+        item: leg.item,
+        through_m: leg.through_m.iter().map(to_centimetres).collect(),
+        position_m: leg.place_m.into(),
     }
-    places
+}
+
+/// Ways over ground have many places.
+fn to_centimetres(place_m: &Vector3<f64>) -> [f64; 3] {
+    place_m.map(|metres| (metres * 100.0).round() / 100.0).into()
 }
 
 fn fence_scene(fence: &Fence<'_>) -> FenceScene {
@@ -144,7 +140,7 @@ fn circle([north_m, east_m]: [f64; 2], radius_m: f64) -> Vec<[f64; 2]> {
     (0..CORNERS).map(corner).collect()
 }
 
-fn obstacle(obstacle: &Obstacle) -> ObstacleScene {
+fn obstacle(obstacle: &Obstacle, terrain: &Terrain) -> ObstacleScene {
     let corners_m = match obstacle.shape {
         ObstacleShape::Cylinder { centre_m, radius_m } => circle(centre_m, radius_m),
         ObstacleShape::Box { centre_m: [north_m, east_m], size_m: [length_m, width_m], heading_rad } => {
@@ -155,7 +151,10 @@ fn obstacle(obstacle: &Obstacle) -> ObstacleScene {
                 .to_vec()
         }
     };
-    ObstacleScene { name: obstacle.name.clone(), corners_m, heights_m: [obstacle.bottom_m, obstacle.top_m] }
+    // What stands on a slope is rooted far below it.
+    let lowest_m = corners_m.iter().map(|corner_m| -terrain.z_m(*corner_m)).fold(f64::INFINITY, f64::min);
+    let heights_m = [obstacle.bottom_m.max(lowest_m), obstacle.top_m];
+    ObstacleScene { name: obstacle.name.clone(), corners_m, heights_m }
 }
 
 #[cfg(test)]

@@ -159,9 +159,9 @@ fn fly_there(conventions: &str) {
     let mut pilot = Pilot::of(&["--autopilot", conventions, "--record", record, "--speed", "10"]);
     assert_eq!(pilot.order(serde_json::json!({ "action": "take_off", "height_m": 6.0 })), None);
     pilot.wait("up", |_, place_m| near(place_m, [0.0, 0.0, -6.0]));
-    let goal_m = [4.0, -3.0, -8.0];
-    assert_eq!(pilot.order(serde_json::json!({ "action": "fly_to", "position_m": goal_m })), None);
-    pilot.wait("there", |_, place_m| near(place_m, goal_m));
+    let order = serde_json::json!({ "action": "fly_to", "place_m": [4.0, -3.0], "height_m": 8.0 });
+    assert_eq!(pilot.order(order), None);
+    pilot.wait("there", |_, place_m| near(place_m, [4.0, -3.0, -8.0]));
     let wind = serde_json::json!({ "action": "wind", "speed_m_s": 3.0, "from_deg": 90.0 });
     assert_eq!(pilot.order(wind), None);
     assert_eq!(pilot.order(serde_json::json!({ "action": "fault", "fault": "rotor3=weak" })), None);
@@ -232,7 +232,8 @@ fn refusals_say_why() {
     let mut pilot = Pilot::of(&[]);
     for (please, reason) in [
         (serde_json::json!({ "action": "start_mission" }), "mission"),
-        (serde_json::json!({ "action": "fly_to", "position_m": [1e9, 0, -5] }), "place"),
+        (serde_json::json!({ "action": "fly_to", "place_m": [1e9, 0], "height_m": 5 }), "place"),
+        (serde_json::json!({ "action": "fly_to", "place_m": [0, 0], "height_m": 1e6 }), "height"),
         (serde_json::json!({ "action": "take_off", "height_m": -3 }), "height -3 m; use 0.5 to 1000 m"),
         (serde_json::json!({ "action": "fault", "fault": "rotor9=off" }), "unknown unit `rotor9`"),
         (

@@ -47,6 +47,7 @@ mod parameter_errors;
 mod parameter_names;
 mod parameters;
 mod plan_files;
+mod planned_way;
 mod plans;
 mod plans_on_a_bad_channel;
 mod radio;

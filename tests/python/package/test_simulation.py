@@ -17,6 +17,7 @@ FLIGHTS = [
     ({}, {}),
     ({"airframe.preset": "iris", "sensor.position_noise": 0.01, "sensor.seed": 3}, {"wind.velocity.x": 3.0}),
     ({"controller.kind": "dlqr", "airframe.mass": 0.8, "reference.shaping": False}, {"reference.yaw": 1.0, "disturbance.force.y": 0.5}),
+    ({"environment.ground_plane": True, "airframe.rotor.ground_effect": True, "initial.position.z": -5.2}, {"ground.z": -5.0}),
 ]
 
 
@@ -111,6 +112,21 @@ def test_the_plant_flies_as_its_fmu():
     )  # fmt: skip
     for name in names:
         np.testing.assert_array_equal(table[name], result[name], err_msg=name)
+
+
+@pytest.mark.parametrize("actuation", ["reference", "rates", "rotors"])
+def test_each_vehicle_of_a_fleet_lands_on_ground_of_its_own(actuation):
+    """It falls freely, and stands g/ω² deep in the ground: feet are oscillators of 50 rad/s."""
+    ground = np.array([0.0, -2.0, -5.0])
+    fleet = Fleet(3, {"environment.ground_plane": True, "initial.position.z": -6.0}, {"ground.z": ground, "armed": False}, actuation=actuation)
+    table = fleet.fly(8.0, step=0.1, outputs=["altitude"])
+    np.testing.assert_allclose(table["altitude"][4], 6.0 - 9.80665 / 2 * 0.4**2, atol=1e-9)
+    np.testing.assert_allclose(table["altitude"][-1], -ground - 9.80665 / 2500, atol=1e-4)
+
+
+def test_a_start_below_the_ground_is_refused():
+    with pytest.raises(ParameterError, match="initial.position.z = 0 m is below the ground at ground.z = -5 m"):
+        Simulation({"environment.ground_plane": True}, {"ground.z": -5.0})
 
 
 def test_body_rates_are_followed():

@@ -199,6 +199,29 @@ def test_a_plant_without_ground_is_told_so(program, tmp_path, body):
     assert result.returncode == 0 and "falls" not in result.stderr, result.stderr
 
 
+@pytest.mark.parametrize("model", ["closed loop", "plant"])
+def test_ours_land_on_a_plateau(start, connect, closed_loop, plant, tmp_path, model):
+    """4 m above home, and g/ω² deep in the ground: feet are oscillators of 50 rad/s."""
+    world = tmp_path / "world.toml"
+    world.write_text("[[hill]]\ncenter = [12.0, 0.0]\nradius = 10.0\ntop = 5.0\nheight = 4.0\n")
+    client = connect(start("--fmu", str(plant if model == "plant" else closed_loop), "--world", str(world)))
+    client.take_off()
+    client.go(lambda: client.position((12, 0, -8)))
+    client.stream(lambda: client.position((12, 0, -8)), near((12, 0, -8), 0.2, 0.2), 40)
+    client.land()
+    at = client.wait("LOCAL_POSITION_NED")
+    assert at.z == pytest.approx(-4 + 9.80665 / 2500, abs=2e-3) and math.hypot(at.x - 12, at.y) < 0.5
+
+
+def test_a_plant_with_ground_of_its_own_is_told_so(program, body, tmp_path):
+    world = tmp_path / "world.toml"
+    world.write_text("[[hill]]\ncenter = [12.0, 0.0]\nradius = 10.0\ntop = 5.0\nheight = 4.0\n")
+    arguments = ["--fmu", body[0], "--map", body[1], "--speed", "max", "--duration", 1, "--link", "udpin:0"]
+    words = "has no input for the height of the ground (ground.z): it stands on ground of its own"
+    told = [words in run(program, *arguments, *more).stderr for more in ([], ["--world", world])]
+    assert told == [False, True]
+
+
 def test_a_plant_that_takes_both_is_told_what_drives_it(program, plant, tmp_path):
     """Ours by thrust and torques, without a word about its parameter `actuation`: it takes off."""
     map_file = tmp_path / "wrench.toml"

@@ -240,10 +240,13 @@ def test_missions_and_fences_are_drawn_where_they_are(start, look, tmp_path):
     assert math.dist((box["x"], box["y"]), expected) < 30, (box, expected, stage)
 
 
+HILL = "[[hill]]\ncenter = [20.0, 0.0]\nradius = 15.0\ntop = 3.0\nheight = 6.0\n"
+
+
 def test_hills_are_drawn_as_high_as_they_are(start, connect, look, tmp_path):
     """The oracle is the hill's formula: half a wave of a cosine from its level top to its foot."""
     world = tmp_path / "world.toml"
-    world.write_text("[[hill]]\ncenter = [20.0, 0.0]\nradius = 15.0\ntop = 3.0\nheight = 6.0\n")
+    world.write_text(f"{HILL}[[cylinder]]\ncenter = [-9.0, -9.0]\nradius = 1.0\nheight = 8.0\n")
     vehicle = start("--view", "127.0.0.1:0", "--world", str(world))
     shown = look(vehicle.ready["view"])
     shown.wait("page.scene.ground && page.frame")
@@ -254,6 +257,8 @@ def test_hills_are_drawn_as_high_as_they_are(start, connect, look, tmp_path):
     assert len(corners) < 10_300 and up == pytest.approx(3 * (1 + np.cos(np.pi * away)), abs=0.0051)
     assert min(east) < -20 and max(east) > 20 and min(-south) < 0 and max(-south) > 40
     assert shown.page.locator("#scale").inner_text() == "Squares of 1 m"
+    # An obstacle stands on the ground, and not in it.
+    assert shown.value("page.scene.obstacles[0].heights_m") == pytest.approx((0, 8), abs=0.001)
     # A vehicle over the hill has its shadow on it.
     client = connect(vehicle)
     client.take_off()
@@ -261,6 +266,63 @@ def test_hills_are_drawn_as_high_as_they_are(start, connect, look, tmp_path):
     for goal in ((0, 0, -10), (20, 0, -10)):
         client.stream(lambda: client.position(goal), near(goal, within=0.2))
     shown.wait("Math.abs(view.crafts.drops.geometry.attributes.position.getY(1) - 6) < 0.05")
+
+
+def hill(north, east):
+    """Its height by its formula, m."""
+    return 3 * (1 + math.cos(math.pi * min(max((math.hypot(north - 20, east) - 3) / 12, 0), 1)))
+
+
+def test_a_click_on_a_slope_flies_over_that_place(start, connect, look, tmp_path):
+    """The place on the screen is projected by the test. A plane at the height of the form is metres beside it there."""
+    world = tmp_path / "world.toml"
+    world.write_text(HILL)
+    vehicle = start("--view", "127.0.0.1:0", "--world", str(world))
+    client = connect(vehicle)
+    shown = look(vehicle.ready["view"])
+    shown.wait("page.isPilot && page.scene.ground && page.frame")
+    shown.page.get_by_role("button", name="Take off").click()
+    client.wait("LOCAL_POSITION_NED", near((0, 0, -5), within=0.2), timeout=30)
+    shown.page.get_by_role("button", name="Follow").click()
+    for north, east in ((11.0, -2.0), (20.0, 0.0), (-200.0, 30.0)):
+        shown.page.evaluate("""([north, east]) => {
+            const { view } = window.lmpcView;
+            view.controls.target.set(east, 4, -north);
+            view.lookFrom(view.camera.position.clone().set(8, 7, 20));
+        }""", [north, east])
+        shown.wait("true")
+        shown.page.mouse.click(*shown.project((north, east, -hill(north, east))))
+        asked = [float(shown.page.locator(f"#fly-to [name={name}]").input_value()) for name in ("north", "east")]
+        assert asked == pytest.approx((north, east), abs=0.15)
+        if north > 0:
+            client.wait("LOCAL_POSITION_NED", near((*asked, -hill(*asked) - 5), within=0.15), timeout=40)
+
+
+def test_a_mission_over_a_hill_is_drawn_as_it_is_flown(start, connect, look, tmp_path):
+    """The oracle is the flight: its trail keeps to the line, 4 m above the ground, and the line to the trail."""
+    world, plan = tmp_path / "world.toml", tmp_path / "hill.waypoints"
+    world.write_text(HILL)
+    lines = ["QGC WPL 110"] + [
+        f"{item}\t0\t{frame}\t{command}\t2\t0\t0\t0\t{47.397742 + math.degrees(north / 6_371_000.0)}\t8.545594\t{height}\t1"
+        for item, (frame, command, north, height) in enumerate([(0, 16, 0, 488), (3, 22, 0, 4), (10, 16, 40, 4)])
+    ]
+    plan.write_text("\n".join(lines) + "\n")
+    vehicle = start("--view", "127.0.0.1:0", "--world", str(world), "--mission", str(plan), "--speed", "5")
+    client = connect(vehicle)
+    shown = look(vehicle.ready["view"])
+    shown.wait("page.isPilot && page.scene.vehicles[0]?.mission.length === 2")
+    positions = "view.surroundings.group.children.find(({ isLine, material }) => isLine && material.isLineDashedMaterial).geometry.attributes.position.array"
+    east, up, south = np.array(shown.value(f"[...{positions}]")).reshape(-1, 3).T
+    assert max(abs(east)) < 0.05 and len(up) > 10
+    expected = [4 + hill(north, 0) for north in -south]
+    assert up[1:] == pytest.approx(expected[1:], abs=0.05) and up[0] == pytest.approx(0, abs=0.01)
+    shown.page.get_by_role("button", name="Start mission").click()
+    client.wait("LOCAL_POSITION_NED", near((40, 0, -4), within=0.2), timeout=60)
+    trail = np.array(shown.value("page.histories.get(1).places"))
+    on_the_way = [(north, -down) for north, _, down in trail if -down > 3.9]
+    assert len(on_the_way) > 20 and max(height for _, height in on_the_way) == pytest.approx(10, abs=0.3)
+    for north, height in on_the_way:
+        assert height == pytest.approx(np.interp(north, -south[1:], up[1:]), abs=0.3), north
 
 
 def test_a_table_is_replayed(start, look, tmp_path):

@@ -41,6 +41,7 @@ pub fn drive(
         rotor_command_rad_s,
         wrench: mean_wrench(plant, state, &ours, inputs),
         wind_m_s: inputs.disturbance.wind_m_s,
+        ground_z_m: inputs.ground_z_m,
     })?;
     let change = || (motion.body.velocity_m_s - state.body.velocity_m_s) / h_s;
     let rotor_speed_rad_s = motion.rotor_speed_rad_s.unwrap_or(ours.rotor_speed_rad_s);

@@ -26,6 +26,8 @@ pub struct Demand {
     pub wrench: Wrench,
     /// Velocity of the air, m/s.
     pub wind_m_s: Vector3<f64>,
+    /// z of the ground below the vehicle, m.
+    pub ground_z_m: f64,
 }
 
 /// How a model has moved.

@@ -120,6 +120,7 @@ impl ForeignFlight {
             rotor_command_rad_s: [0.0; 4],
             wrench: Wrench::default(),
             wind_m_s: inputs.disturbance.wind_m_s,
+            ground_z_m: inputs.ground_z_m,
         }
     }
 

@@ -152,7 +152,7 @@ pub use heading_policy::HeadingPolicy;
 pub use home::Home;
 pub use landed::LandedState;
 pub use log_conduct::LogConduct;
-pub use mission::{MissionState, MissionStatus};
+pub use mission::{MissionState, MissionStatus, PlannedLeg};
 pub use motion::wrapped;
 pub use motor_test::MotorTest;
 pub use notice::{Notice, Refusal, Severity};

@@ -42,12 +42,12 @@ export class Controls {
     return action === "take_off" ? { height_m: this.height() } : {};
   }
 
-  /** Flies to a place, north and east, m. */
+  /** Flies to a place, north and east, m, above the ground there. */
   flyTo([north, east]) {
     const { elements } = document.getElementById("fly-to");
     elements.north.value = north.toFixed(2);
     elements.east.value = east.toFixed(2);
-    return this.order("fly_to", { position_m: [north, east, -this.height()] });
+    return this.order("fly_to", { place_m: [north, east], height_m: this.height() });
   }
 
   async order(action, parameters = {}) {

@@ -1,7 +1,7 @@
 // Ground with heights: a surface, and lines along the squares between them.
 
 import {
-  BufferGeometry, Float32BufferAttribute, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial,
+  BufferGeometry, Float32BufferAttribute, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, Plane, Vector3,
 } from "../three/three.module.min.js";
 import { place } from "./axes.js";
 
@@ -23,6 +23,18 @@ export function heightAt(ground, north, east) {
   const [column, right] = square((east - corner[1]) / step, rows[0].length - 1);
   const along = (heights) => heights[column] * (1 - right) + (heights[column + 1] ?? heights[column]) * right;
   return along(rows[row]) * (1 - up) + along(rows[row + 1] ?? rows[row]) * up;
+}
+
+/**
+ * Where a ray meets the ground, or null: on the surface that is drawn, or beyond it, where the ground goes on as high as at the edge. Flat
+ * ground has neither.
+ */
+export function underRay(caster, ground, surface) {
+  const [hit] = caster.intersectObject(surface, false);
+  if (hit) return hit.point;
+  const level = (height) => caster.ray.intersectPlane(new Plane(new Vector3(0, 1, 0), -height), new Vector3());
+  const rough = level(0);
+  return rough && level(heightAt(ground, -rough.z, rough.x));
 }
 
 /** The surface, with its lines. */

@@ -8,6 +8,7 @@ import { place } from "./axes.js";
 import { Crafts } from "./crafts.js";
 import { Fineness } from "./graphics.js";
 import { Grid } from "./grid.js";
+import { underRay } from "./ground.js";
 import { Labels } from "./labels.js";
 import { Surroundings } from "./surroundings.js";
 
@@ -23,8 +24,8 @@ function colours() {
 
 export class View {
   /**
-   * `on` has functions: `place` gets the place under a click, north and east, at the height that `height()` tells; `change` is called
-   * when there is something else to draw.
+   * `on` has functions: `place` gets the place under a click, north and east: on ground with heights, or else at the height that `height()`
+   * tells; `change` is called when there is something else to draw.
    */
   constructor(canvas, labels, isSoftware, on) {
     this.canvas = canvas;
@@ -99,14 +100,17 @@ export class View {
     this.on.change();
   }
 
-  /** Where the horizontal plane at a height is under a point of the screen: north and east, m. */
+  /** Where the ground, if it has heights, or else the horizontal plane at a height is under a point of the screen: north and east, m. */
   placeUnder(clientX, clientY, height) {
     const box = this.canvas.getBoundingClientRect();
     const point = new Vector2(((clientX - box.left) / box.width) * 2 - 1, 1 - ((clientY - box.top) / box.height) * 2);
     const caster = new Raycaster();
     this.camera.updateMatrixWorld();
     caster.setFromCamera(point, this.camera);
-    const hit = caster.ray.intersectPlane(new Plane(new Vector3(0, 1, 0), -height), new Vector3());
+    const { ground } = this.description;
+    const hit = ground
+      ? underRay(caster, ground, this.surroundings.ground.children[0])
+      : caster.ray.intersectPlane(new Plane(new Vector3(0, 1, 0), -height), new Vector3());
     return hit && [-hit.z, hit.x];
   }
 

@@ -39,7 +39,9 @@ export class Surroundings {
       this.group.add(home);
     }
     for (const obstacle of description.obstacles) this.obstacle(obstacle, colours);
-    if (description.ground) this.group.add(surface(description.ground, colours));
+    /** The surface of ground that has heights. */
+    this.ground = description.ground ? surface(description.ground, colours) : null;
+    if (this.ground) this.group.add(this.ground);
   }
 
   clear() {
@@ -55,7 +57,7 @@ export class Surroundings {
     if (mission.length === 0) return;
     const places = mission.map(({ position_m }) => place(position_m));
     const line = new Line(
-      new BufferGeometry().setFromPoints([place(home_m), ...places]),
+      new BufferGeometry().setFromPoints([home_m, ...mission.flatMap(({ through_m, position_m }) => [...through_m, position_m])].map((ned) => place(ned))),
       new LineDashedMaterial({ color: colours.mission, dashSize: 0.8, gapSize: 0.5 }));
     line.computeLineDistances();
     this.group.add(line);

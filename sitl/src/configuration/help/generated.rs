@@ -5,11 +5,18 @@ use std::io;
 use clap::Command;
 use clap_complete::Shell;
 use clap_mangen::Man;
-use clap_mangen::roff::{Roff, roman};
+use clap_mangen::roff::{Roff, bold, italic, roman};
 
 use super::command;
 use super::topic::TOPICS;
 use crate::configuration::nearest;
+
+/// What the program does, in paragraphs.
+const DESCRIPTION: &[&str] = &[
+    "Simulates a quadrotor that MAVLink clients fly as they fly one with PX4 or ArduPilot: ground stations, MAVSDK, MAVProxy, pymavlink.",
+    "Without options it flies PX4's conventions in real time, for ground stations on UDP port 14550 and programs on UDP port 14540. Ctrl-C ends it.",
+    "Each option can also be set by an environment variable or in a configuration file: see CONFIGURATION. The sections below are the topics of --help.",
+];
 
 /// What can be generated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,8 +90,15 @@ fn manual(command: Command, page: &mut Vec<u8>) -> io::Result<()> {
     let head = Man::new(command.clone());
     head.render_title(page)?;
     head.render_name_section(page)?;
-    head.render_synopsis_section(page)?;
-    head.render_description_section(page)?;
+    let mut text = Roff::new();
+    text.control("SH", ["SYNOPSIS"]);
+    // The name that is typed stands for itself; all flags at once say nothing.
+    text.text([bold("lmpc-sitl"), roman(" ["), italic("OPTION"), roman("]...")]);
+    text.control("SH", ["DESCRIPTION"]);
+    for paragraph in DESCRIPTION {
+        text.control("PP", []).text([roman(*paragraph)]);
+    }
+    text.to_writer(page)?;
     for topic in TOPICS {
         // What the short help leaves out would have no description here.
         let flags = topic
@@ -136,6 +150,14 @@ mod tests {
             let words = help.split(['-', '`', '\'', '.']).next().unwrap_or_default();
             assert!(page.contains(words), "{:?}: {words}", argument.get_long());
         }
+    }
+
+    #[test]
+    fn the_manual_page_says_in_short_how_to_start() {
+        let page = Form::Manual.text();
+        let (_, synopsis) = page.split_once(".SH SYNOPSIS\n").expect("a synopsis");
+        assert!(synopsis.lines().nth(1) == Some(".SH DESCRIPTION"), "{synopsis}");
+        assert!(page.lines().all(|line| line != "true"), "a switch needs no list of values");
     }
 
     #[test]

@@ -36,12 +36,15 @@ pub fn command() -> Command {
     let command = Arguments::command().disable_help_flag(true).arg(request::generate()).arg(request::help());
     command.after_help(footer()).mut_args(|argument| {
         let names = argument.get_value_names().unwrap_or_default();
+        // They are in its name.
+        let is_switch = names.first().is_some_and(|name| *name == "true|false");
         let hint = match names.first().map_or("", |name| name.as_str()) {
             "DIR" => ValueHint::DirPath,
             name if name.contains("FILE") => ValueHint::FilePath,
             _ => ValueHint::Unknown,
         };
-        argument.hide_env(true).value_hint(hint)
+        let hidden = is_switch || argument.is_hide_possible_values_set();
+        argument.hide_env(true).hide_possible_values(hidden).value_hint(hint)
     })
 }
 

@@ -46,7 +46,7 @@ topics! {
     "time" "speed, lock-step, duration and seed" ["speed", "lockstep", "lockstep-period", "lockstep-timeout", "duration", "seed"];
     "wind" "wind and gusts" ["wind", "gusts"];
     "sensors" "what the vehicle measures" ["sensors", "noise", "kalman"];
-    "obstacles" "what stands in the way" ["world"];
+    "obstacles" "the ground, and what stands in the way" ["world"];
     "traffic" "other aircraft" ["traffic"];
     "faults" "what breaks, and when" ["fault"];
     "record" "records and replays" ["record", "record-size", "replay"];

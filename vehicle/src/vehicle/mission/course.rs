@@ -17,6 +17,7 @@ use super::super::takeoff::is_slow_near;
 use super::super::tick::TICK_S;
 use super::leg::{Guide, Leg, LegProgress, Turn, is_at_rest, is_settling};
 use super::route::Route;
+use super::takeoff_height::takeoff_z_m;
 use super::task::{Lowering, Task, TaskProgress, Then, delay_end_us};
 use crate::equipment::Operation;
 use crate::plan::Place;
@@ -338,12 +339,8 @@ impl Course {
         situation: &Situation,
         proposal: &mut Proposal,
     ) -> TaskProgress {
-        const LEAST_M: f64 = 0.5;
         let home_z_m = proposal.home().position_m.z;
-        let z_m = match place.down_m(home_z_m) {
-            Some(z_m) if home_z_m - z_m >= LEAST_M => z_m,
-            _ => home_z_m - situation.conduct.takeoff_height_m,
-        };
+        let z_m = takeoff_z_m(place, home_z_m, situation.conduct.takeoff_height_m);
         let grounded = proposal.steering().kind() == SteeringKind::Idle;
         if !grounded && situation.outputs.setpoint.position_m.z <= z_m {
             return self.leave_takeoff(step, route, situation);

@@ -22,8 +22,10 @@ mod jumps;
 mod leg;
 mod machine;
 mod path;
+mod planned_way;
 mod route;
 mod status;
+mod takeoff_height;
 mod task;
 #[cfg(test)]
 mod tests;
@@ -31,6 +33,7 @@ mod tests;
 pub use course::Course;
 pub use jumps::Jumps;
 pub use machine::Mission;
+pub use planned_way::{Beginning, PlannedLeg, planned_way};
 pub use route::Route;
 pub use status::{MissionState, MissionStatus};
 pub use task::{Helm, TaskProgress};

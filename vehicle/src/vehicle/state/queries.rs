@@ -9,7 +9,7 @@ use super::super::failsafe::Failsafe;
 use super::super::fence_watch::FenceRecord;
 use super::super::home::Home;
 use super::super::landed::LandedState;
-use super::super::mission::MissionStatus;
+use super::super::mission::{Beginning, MissionStatus, PlannedLeg, planned_way};
 use super::super::orbit_request::OrbitStatus;
 use super::super::set_point::PositionSetPoint;
 use super::super::speeds::with_speeds;
@@ -21,7 +21,7 @@ use crate::fence::{Breach, Fence};
 use crate::foreign::{ForeignDescription, ForeignMotion};
 use crate::identity::Identity;
 use crate::mode::Mode;
-use crate::plan::{MissionItem, PlanKind, Plans, Site};
+use crate::plan::{MissionItem, PlanKind, Plans, Site, compile};
 use crate::surroundings::Terrain;
 use crate::world::{LocalFrame, ToldFrame};
 
@@ -299,6 +299,17 @@ impl Vehicle {
     /// Where the mission is.
     pub fn mission_status(&self) -> MissionStatus {
         self.machines.mission.status(self.mode())
+    }
+
+    /// The way that its mission is planned to take, from home on.
+    pub fn planned_way(&self) -> Vec<PlannedLeg> {
+        let beginning = Beginning {
+            home_m: self.home().position_m,
+            takeoff_height_m: self.conduct().takeoff_height_m,
+            terrain: self.terrain(),
+        };
+        let items = self.plans().get(PlanKind::Mission).items();
+        planned_way(&compile::mission(items, &self.site()), &beginning)
     }
 
     /// Items that were reached since the last call.
