@@ -93,7 +93,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("TKOFF_THR_MAX", 0.9, 0.0..=0.9, "", "Largest thrust of a takeoff"),
         ("TERRAIN_MARGIN", 0.05, 0.05..=50000.0, "m", "Margin of places of the terrain database"),
         ("TERRAIN_OFS_MAX", 30.0, 0.0..=50.0, "m", "Largest offset of the terrain"),
-        ("SURFTRAK_TC", 1.0, 0.0..=5.0, "s", "Time constant of tracking the surface"),
     ], whole [
         ("AVOID_ANGLE_MAX", 1000, 0..=4500, "cdeg", "Largest lean away from obstacles in AltHold"),
         ("AVOID_BEHAVE", 0, 0..=1, "", "Slide along obstacles or stop; here sticks slide and Guided stops"),
@@ -109,7 +108,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("WVANE_LAND", -1, -1..=4, "", "What is turned into the wind on landings; here as elsewhere"),
         ("TERRAIN_OPTIONS", 0, 0..=1, "", "Options of the terrain"),
         ("TERRAIN_SPACING", 100, 30..=500, "m", "Distance of places of the terrain database"),
-        ("SURFTRAK_MODE", 1, 0..=2, "", "Tracking of the surface; here sticks hold a height"),
         ("THROW_MOT_START", 0, 0..=1, "", "Motors before a throw; here they rest"),
         ("ZIGZ_AUTO_ENABLE", 0, 0..=1, "", "Lines of ZigZag one after the other; here a mission flies them"),
         ("DEV_OPTIONS", 0, 0..=7, "", "Options for developers"),
