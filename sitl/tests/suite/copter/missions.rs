@@ -65,6 +65,18 @@ fn a_mission_pauses_and_goes_on_however_often_it_is_asked() {
     flier.wait_home();
 }
 
+/// Suite: MISSION_OPTION_CLEAR_MISSION_AT_BOOT.
+#[test]
+fn a_boot_clears_the_mission_if_it_is_to() {
+    let mut flier = with_mission(&[(TAKEOFF, 0.0, 0.0, 20.0), (RETURN, 0.0, 0.0, 0.0)]);
+    let count = |flier: &Flier| flier.vehicle().plans().get(PlanKind::Mission).items().len();
+    flier.reboot();
+    assert_eq!(count(&flier), 3);
+    flier.set("MIS_OPTIONS", 1.0);
+    flier.reboot();
+    assert_eq!(count(&flier), 0);
+}
+
 /// Suite: MissionIndexValidity, InvalidJumpTags.
 #[test]
 fn items_and_tags_that_there_are_not_are_refused() {
