@@ -52,7 +52,7 @@ pub use vehicle::{
     MotorTest, Notice, ObstacleWatch, OperatorId, OperatorPlace, OrbitHeading, OrbitRequest, OrbitSettings,
     OrbitStatus, Pilot, PlannedLeg, PositionSetPoint, PrecisionLanding, PrecisionSettings, Pulses, Recovery,
     Refusal, RemoteId, Reposition, ReturnGoal, ReturnSettings, SelfId, SetPoint, Severity, Sighting,
-    Simulated, SteeringKind, StickSettings, Sticks, StreamRates, SurroundingsSettings, TICK_S, TICK_US,
-    TargetReport, Threat, TrackedAttitude, TrafficSettings, TrafficWatch, TrailSettings, Trainer, Vehicle,
-    VehicleSettings, Weakness, YawTarget, wrapped,
+    Simulated, SteeringKind, StickSettings, Sticks, StreamRates, Surface, SurfaceSettings,
+    SurroundingsSettings, TICK_S, TICK_US, TargetReport, Threat, TrackedAttitude, Tracking, TrafficSettings,
+    TrafficWatch, TrailSettings, Trainer, Vehicle, VehicleSettings, Weakness, YawTarget, wrapped,
 };

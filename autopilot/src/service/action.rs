@@ -142,9 +142,19 @@ fn item_of(command: &Command, frame: u8) -> MissionItem {
 /// The same as an item of a mission.
 fn look(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let vehicle = &mut context.vehicle;
-    // A COMMAND_LONG has no frame: ArduPilot means it above home, PX4 above sea level.
-    let relative = vehicle.identity().is_ardupilot() && matches!(command.kind, CommandKind::Long { .. });
-    let frame = if relative { plan::frame::GLOBAL_RELATIVE } else { told_frame(command) };
+    // A COMMAND_LONG has no frame: ArduPilot means it above home. PX4 means altitudes above sea level whatever the frame says, and MAVSDK
+    // sends them so in a frame that is relative.
+    let frame = match (vehicle.identity(), &command.kind) {
+        (Identity::ArduPilot, CommandKind::Long { .. }) => plan::frame::GLOBAL_RELATIVE,
+        (Identity::Px4, _) if global_frame(command).is_ok() => plan::frame::GLOBAL,
+        _ => told_frame(command),
+    };
+    // ArduPilot looks ahead again when it is told to look at zero, zero and zero.
+    let at_place = command.number == MavCmd::MAV_CMD_DO_SET_ROI_LOCATION as u16;
+    if at_place && vehicle.identity().is_ardupilot() && [command.x, command.y, command.z] == [0.0; 3] {
+        vehicle.look(None);
+        return Ok(());
+    }
     let item = item_of(command, frame);
     let items = vehicle.plans().get(PlanKind::Mission).items();
     let look = compile::look(&item, items, &vehicle.site()).map_err(|fault| match fault.code {

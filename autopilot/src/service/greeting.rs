@@ -13,6 +13,8 @@ use crate::status_text;
 
 const INTRODUCTION: &str =
     concat!("lmpc-sitl ", env!("CARGO_PKG_VERSION"), ": simulated quadrotor, Laguerre MPC");
+/// Said after that where ArduPilot's conventions hold: clients look for the name of the vehicle whose commands they know.
+const ARDUPILOT_CONVENTIONS: &str = "Conventions of ArduCopter V4.6";
 /// MAV_CMD_DO_SEND_BANNER, by which ArduPilot's ground stations ask what they are connected to.
 const COMMANDS: &[CommandEntry] = &[CommandEntry::question(42_428)];
 /// Peers that are remembered as told so.
@@ -56,7 +58,10 @@ impl Service for Greeting {
 }
 
 fn introduce(context: &mut Context, origin: &Origin) {
-    for message in status_text::messages(Severity::Info, INTRODUCTION, &mut 0) {
-        context.outbox.send(Destination::Peer(origin.peer), message);
+    let conventions = Some(ARDUPILOT_CONVENTIONS).filter(|_| context.vehicle.identity().is_ardupilot());
+    for text in [INTRODUCTION].into_iter().chain(conventions) {
+        for message in status_text::messages(Severity::Info, text, &mut 0) {
+            context.outbox.send(Destination::Peer(origin.peer), message);
+        }
     }
 }

@@ -52,6 +52,7 @@ mod telemetry;
 mod terrain;
 mod time_synchronization;
 pub(crate) mod traffic;
+mod utm_position;
 
 pub use identification::version;
 pub(crate) use interface::{CommandEntry, Outcome, Progress, Repetition, Service};

@@ -11,13 +11,16 @@ use vehicle::surroundings::Aircraft;
 use vehicle::world::{Geodetic, heading_deg};
 use vehicle::{Action, Encounter, Threat, Vehicle};
 
-use super::Service;
+use super::{Service, utm_position};
 use crate::codec::{Frame, Payload, millimetres, scaled_degrees};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin};
 use crate::stream::{Build, Component, Stream};
 
-const STREAMS: &[Stream] = &[Stream::when(ADSB_VEHICLE_DATA::ID, [1.0, 1.0], Build::Several(heard))];
+const STREAMS: &[Stream] = &[
+    Stream::when(ADSB_VEHICLE_DATA::ID, [1.0, 1.0], Build::Several(heard)),
+    Stream::on_request(UTM_GLOBAL_POSITION_DATA::ID, Build::Several(utm_position::own)),
+];
 
 /// Hears and tells traffic.
 #[derive(Clone, Copy, Debug)]

@@ -332,6 +332,22 @@ fn the_gimbal_looks_at_a_place_and_at_another_system() {
     assert_eq!(bench.command(MavCmd::MAV_CMD_DO_SET_ROI_NONE, [0.0; 7]), ACCEPTED);
     bench.fly(3.0);
     assert!(near(gimbal(&mut bench).0, [0.0; 3]), "ahead again");
+    // MAVSDK sends altitudes above sea level in a frame that is relative, and PX4 does not look at the frame.
+    bench.send(MavMessage::COMMAND_INT(COMMAND_INT_DATA {
+        command: MavCmd::MAV_CMD_DO_SET_ROI_LOCATION,
+        target_system: 1,
+        target_component: 1,
+        frame: MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT,
+        x: (place.latitude_deg * 1e7).round() as i32,
+        y: (place.longitude_deg * 1e7).round() as i32,
+        z: alt,
+        ..COMMAND_INT_DATA::default()
+    }));
+    bench.fly(4.0);
+    let (angles, _) = gimbal(&mut bench);
+    assert!((angles[1] + 45.0).abs() < 5.0 && (angles[2] - 90.0).abs() < 5.0, "{angles:?}");
+    assert_eq!(bench.command(MavCmd::MAV_CMD_DO_SET_ROI_NONE, [0.0; 7]), ACCEPTED);
+    bench.fly(3.0);
     // Another system says where it is: 20 m south, on the ground.
     let follow = [7.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     assert_eq!(bench.command(MavCmd::MAV_CMD_DO_SET_ROI_SYSID, follow), ACCEPTED);

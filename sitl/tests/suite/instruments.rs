@@ -147,6 +147,20 @@ fn gps_fixes_come_ten_times_a_second_and_late() {
     assert!(arrivals.iter().all(|(now, taken)| now - taken == gps::LATENCY_US));
 }
 
+/// A receiver of another rate and latency (SIM_GPS1_HZ, SIM_GPS1_LAG_MS): three fixes are under way at once.
+#[test]
+fn gps_fixes_come_as_often_and_as_late_as_they_are_to() {
+    let mut receiver = gps::GpsReceiver::new(1, gps::LATENCY_US);
+    receiver.set(20, 170_000);
+    let arrivals: Vec<(u64, u64)> = (0..3000)
+        .filter_map(|tick| receiver.sample(&at_rest(tick * 1000)).map(|fix| (tick * 1000, fix.time_us)))
+        .collect();
+    assert_eq!(arrivals.first(), Some(&(1_170_000, 1_000_000)));
+    assert_eq!(arrivals.len(), 37);
+    assert!(arrivals.iter().all(|(now, taken)| now - taken == 170_000));
+    assert!(arrivals.windows(2).all(|pair| pair[1].1 - pair[0].1 == 50_000));
+}
+
 #[test]
 fn the_barometer_is_as_noisy_and_drifts_as_the_data_sheet_says() {
     let altitude_m = 488.0;

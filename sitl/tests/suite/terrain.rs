@@ -109,6 +109,30 @@ fn heights_above_the_ground_are_told() {
     assert!((f64::from(there.terrain_height) - origin_m - PLATEAU_M / 2.0).abs() < 0.02, "{there:?}");
 }
 
+/// MPC_ALT_MODE: up a hill of 6 m by the stick, it rises with the ground only if it is to follow that on the way.
+#[test]
+fn position_mode_keeps_the_height_that_it_is_to_keep() {
+    let hill = Hill { centre_m: [70.0, 0.0], radius_m: 60.0, top_m: 15.0, height_m: 6.0 };
+    for (mode, rises_m) in [(0.0, 0.0), (1.0, hill.height_m), (2.0, 0.0)] {
+        let mut bench = Bench::hovering_with(&settings(Identity::Px4, hill));
+        set(&mut bench, "MPC_ALT_MODE", mode);
+        let mut pulses = [1500; vehicle::radio::CHANNELS];
+        bench.autopilot.receive_radio(pulses);
+        bench.fly(0.5);
+        assert_eq!(bench.set_mode(Mode::Position), 0);
+        bench.fly(2.0);
+        let from_m = bench.position();
+        pulses[1] = 1300;
+        bench.autopilot.receive_radio(pulses);
+        bench.fly_until("the top", 90.0, |bench| bench.position()[0] > 64.0);
+        pulses[1] = 1500;
+        bench.autopilot.receive_radio(pulses);
+        bench.fly(8.0);
+        let risen_m = from_m[2] - bench.position()[2];
+        assert!((risen_m - rises_m).abs() < 0.3, "MPC_ALT_MODE {mode}: {risen_m} m, {:?}", bench.texts());
+    }
+}
+
 /// Set-points and DO_REPOSITION above the terrain lead to the height above the ground there.
 #[test]
 fn targets_above_the_terrain_are_above_the_ground_there() {

@@ -1,5 +1,7 @@
 //! The GPS receiver, a u-blox NEO-M8N.
 
+use std::collections::VecDeque;
+
 use nalgebra::Vector3;
 
 use super::noise::{Channel, Noise};
@@ -7,8 +9,10 @@ use super::true_motion::TrueMotion;
 use super::wander::GaussMarkov;
 
 // Figures of the NEO-M8N (u-blox UBX-15031086, table of GNSS performance), as far as not said otherwise.
-/// Time between fixes, µs: the 10 Hz of GPS alone; with GLONASS beside it, the receiver's default, it has 5 Hz.
-pub const PERIOD_US: u64 = 100_000;
+/// Fixes per second: the 10 Hz of GPS alone; with GLONASS beside it, the receiver's default, it has 5 Hz.
+pub const RATE_HZ: u8 = 10;
+/// Time between these fixes, µs.
+pub const PERIOD_US: u64 = 1_000_000 / RATE_HZ as u64;
 /// Time from a fix to its message, µs. Assumed: the data sheet has none; PX4 counts with 110 ms (EKF2_GPS_DELAY).
 pub const LATENCY_US: u64 = 100_000;
 /// Time to the first fix of a hot start, µs: 1 s.
@@ -85,13 +89,19 @@ impl GpsFix {
 /// The instrument.
 #[derive(Clone, Debug)]
 pub struct GpsReceiver {
+    rate_hz: u8,
     latency_us: u64,
     noise: Noise,
     position_error: GaussMarkov,
     velocity_error: GaussMarkov,
+    /// Periods since the start, once it has been looked at.
+    periods: Option<u64>,
     /// Taken, but not yet told.
-    underway: Option<GpsFix>,
+    underway: VecDeque<GpsFix>,
 }
+
+/// Most fixes that are on their way at once: those of 0.3 s at 50 Hz.
+const MOST_UNDERWAY: usize = 16;
 
 impl GpsReceiver {
     /// One that has just been switched on; a fix arrives so long after it was taken, µs.
@@ -99,21 +109,38 @@ impl GpsReceiver {
         let mut noise = Noise::new(seed, Channel::Gps);
         let position_error = GaussMarkov::new(POSITION_CORRELATION_S, &mut noise);
         let velocity_error = GaussMarkov::new(VELOCITY_CORRELATION_S, &mut noise);
-        Self { latency_us, noise, position_error, velocity_error, underway: None }
+        Self {
+            rate_hz: RATE_HZ,
+            latency_us,
+            noise,
+            position_error,
+            velocity_error,
+            periods: None,
+            underway: VecDeque::with_capacity(MOST_UNDERWAY),
+        }
+    }
+
+    /// Takes so many fixes per second from now on, and tells each so late, µs.
+    pub fn set(&mut self, rate_hz: u8, latency_us: u64) {
+        (self.rate_hz, self.latency_us) = (rate_hz, latency_us);
     }
 
     /// The fix that arrives now, if one does. To be called every tick.
     pub fn sample(&mut self, motion: &TrueMotion) -> Option<GpsFix> {
         let time_us = motion.time_us;
-        let latency_us = self.latency_us;
-        let arrived = self.underway.take_if(|fix| fix.time_us + latency_us <= time_us);
-        if time_us.is_multiple_of(PERIOD_US) {
-            let dt_s = PERIOD_US as f64 / 1e6;
+        let has_arrived = |fix: &GpsFix| fix.time_us + self.latency_us <= time_us;
+        let arrived =
+            if self.underway.front().is_some_and(has_arrived) { self.underway.pop_front() } else { None };
+        let periods = time_us * u64::from(self.rate_hz) / 1_000_000;
+        let is_due = self.periods.replace(periods).map_or(time_us == 0, |before| before != periods);
+        if is_due {
+            let dt_s = 1.0 / f64::from(self.rate_hz);
             let position_error = self.position_error.step(dt_s, &mut self.noise);
             let velocity_error = self.velocity_error.step(dt_s, &mut self.noise);
             let scale = Vector3::new(HORIZONTAL_M, HORIZONTAL_M, VERTICAL_M);
             if time_us >= FIRST_FIX_US {
-                self.underway = Some(GpsFix {
+                self.underway.truncate(MOST_UNDERWAY - 1);
+                self.underway.push_back(GpsFix {
                     time_us,
                     position_m: motion.position_m + position_error.component_mul(&scale),
                     velocity_m_s: motion.velocity_m_s + velocity_error * VELOCITY_M_S,

@@ -180,6 +180,16 @@ impl Navigation {
             self.readings.magnetometer = Some(reading);
         }
         let fault = faults.sensor(Sensor::Gps);
+        let rate_hz = match errors {
+            Some(errors) => {
+                self.gps.set(errors.gps_rate_hz, u64::from(errors.gps_latency_ms) * 1000);
+                errors.gps_rate_hz
+            }
+            None => {
+                self.gps.set(gps::RATE_HZ, gps::LATENCY_US);
+                gps::RATE_HZ
+            }
+        };
         let fix = self.gps.sample(motion).and_then(|fix| match errors {
             Some(errors) => self.errors.fix(errors, fix, frame.origin().latitude_deg),
             None => Some(fix),
@@ -187,7 +197,7 @@ impl Navigation {
         if let Some(fix) = fix.and_then(|fix| self.defects.gps.tell(fix, fault)) {
             let starts_again = errors.is_none_or(|errors| errors.switches.starts_again);
             let fitted = fix.is_accurate() && self.estimator.gps(&fix, starts_again);
-            self.gps_trust.update(fitted, gps::PERIOD_US);
+            self.gps_trust.update(fitted, 1_000_000 / u64::from(rate_hz));
             self.gps_watch.update(time_us, fix.position_m.into());
             self.readings.gps = Some(fix);
         }

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::gps::GpsFix;
+use super::gps::{GpsFix, LATENCY_US, RATE_HZ};
 use super::jamming::Jamming;
 use super::noise::{Channel, Noise};
 use crate::fault::{Fault, Faults, Sensor, SensorFault};
@@ -60,6 +60,10 @@ pub struct SensorErrors {
     pub gps_noise_m: f64,
     /// Satellites that the receiver says it uses.
     pub gps_satellites: u8,
+    /// Fixes per second.
+    pub gps_rate_hz: u8,
+    /// Time from a fix to its message, ms.
+    pub gps_latency_ms: u16,
 }
 
 /// Which instruments say nothing, or are not listened to.
@@ -125,6 +129,8 @@ impl Default for SensorErrors {
             gps_jammed: false,
             gps_noise_m: 0.0,
             gps_satellites: SATELLITES,
+            gps_rate_hz: RATE_HZ,
+            gps_latency_ms: (LATENCY_US / 1000) as u16,
         }
     }
 }
@@ -152,6 +158,8 @@ impl SensorErrors {
         let quiet = Self {
             switches: SensorSwitches { barometer_frozen: self.switches.barometer_frozen, ..self.switches },
             gps_satellites: self.gps_satellites,
+            gps_rate_hz: self.gps_rate_hz,
+            gps_latency_ms: self.gps_latency_ms,
             ..Self::default()
         };
         *self != quiet || self.switches.barometer_frozen

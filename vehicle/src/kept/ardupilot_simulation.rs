@@ -90,8 +90,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("SIM_TEMP_START", 25.0, -50.0..=100.0, "degC", "Temperature at the start"),
         ("SIM_WIND_DELAY", 0.0, 0.0..=60.0, "s", "Delay of the wind"),
     ], whole [
-        ("SIM_GPS1_HZ", 5, 1..=50, "Hz", "Rate of the receiver; here 10 Hz"),
-        ("SIM_GPS1_LAG_MS", 100, 0..=1000, "ms", "Delay of the receiver"),
         ("SIM_GPS1_LCKTIME", 0, 0..=600, "s", "Time to the first fix"),
         ("SIM_GPS1_TYPE", 1, 0..=20, "", "Kind of the receiver"),
         ("SIM_GPS_TYPE", 1, 0..=20, "", "Kind of the receiver"),

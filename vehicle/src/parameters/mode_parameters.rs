@@ -74,6 +74,7 @@ pub static ARDUPILOT_MODE_PARAMETERS: &[ConductParameter] = &[
     real!("RTL_ALT_FINAL_M", Some(("RTL_ALT_FINAL", 100.0)), 0.0..=1000.0, return_home.final_height_m, "m", "Height above home at which a return ends; 0 lands").also(&[("RTL_ALT_FINAL_M", 1.0)]),
     switch!("RTL_ALT_TYPE", return_home.above_ground, "What the height of a return counts from", ["Home", "The ground, which its way follows"]),
     switch!("MIS_RESTART", mission_restarts, "What a mission does that was left and is entered again", ["Resume", "Restart"]),
+    bitmask!("MIS_OPTIONS", MISSION_OPTIONS, mission_options, u32::from, options, "Options of missions: value 1 clears the mission at a reboot; the other values have no effect"),
     real!("RTL_LOIT_TIME", None, 0.0..=60_000.0, return_home.wait_s, 1000.0, "ms", "Time that a return waits above home before it descends"),
     real!("RTL_SPEED_MS", Some(("RTL_SPEED", 100.0)), 0.0..=50.0, return_home.speed_m_s, "m/s", "Speed of a return; 0 is that of missions").also(&[("RTL_SPEED_MS", 1.0)]),
     real!("RTL_CONE_SLOPE", None, 0.0..=10.0, return_home.cone_slope, "", "Slope of the cone above home within which a return climbs less; below 0.5 there is none"),
@@ -197,6 +198,13 @@ const AUTO_OPTIONS: &[&str] = &[
     "Reserved",
     "Reserved",
     "Allow weathervaning",
+];
+
+const MISSION_OPTIONS: &[&str] = &[
+    "Clear the mission at a reboot",
+    "Return by the landing if the battery does not last",
+    "Continue after a landing",
+    "Do not reset jump counters",
 ];
 
 const GUIDED_OPTIONS: &[&str] = &[

@@ -2,7 +2,7 @@
 
 use super::ConductParameter;
 use super::conduct_parameter::{choice, real, switch};
-use crate::vehicle::{Action, BeaconBeam, Conduct, Recovery};
+use crate::vehicle::{Action, BeaconBeam, Conduct, Recovery, Tracking};
 
 /// A whole number.
 macro_rules! whole {
@@ -28,6 +28,7 @@ macro_rules! whole {
 pub static PX4_SURROUNDINGS: &[ConductParameter] = &[
     real!("CP_DIST", None, -1.0..=15.0, surroundings.obstacle_distance_m, "m", "Distance to keep from obstacles in Position mode; negative disables it"),
     real!("CP_DELAY", None, 0.0..=1.0, surroundings.obstacle_delay_s, "s", "Delay with which ranges are measured and the vehicle brakes"),
+    choice!("MPC_ALT_MODE", ALTITUDE_MODES, surroundings.surface.tracking, "What the height refers to in Altitude and Position mode, if there is a downward rangefinder (a --world with obstacles or heights)"),
     switch!("CP_GO_NO_DATA", surroundings.go_without_data, "Move where nothing is measured, while CP_DIST is not negative"),
     choice!("NAV_TRAFF_AVOID", PX4_TRAFFIC, surroundings.traffic.action, "Action when traffic comes too near"),
     real!("NAV_TRAFF_A_HOR", None, 1.0..=10_000.0, surroundings.traffic.near_m, "m", "Horizontal distance of traffic that is too near"),
@@ -52,6 +53,8 @@ pub static ARDUPILOT_SURROUNDINGS: &[ConductParameter] = &[
     whole!("RNGFND1_TYPE", 100_u8, rangefinder_kind, "Downward rangefinder: 0 none; any other kind is the simulated one"),
     real!("RNGFND1_MAX", None, 0.5..=100.0, surroundings.rangefinder_farthest_m, "m", "Farthest that the rangefinder measures").also(&[("RNGFND1_MAX_CM", 100.0)]),
     real!("RNGFND1_MIN", None, 0.0..=5.0, surroundings.rangefinder_nearest_m, "m", "Nearest that the rangefinder measures").also(&[("RNGFND1_MIN_CM", 100.0)]),
+    choice!("SURFTRAK_MODE", TRACKINGS, surroundings.surface.tracking, "Surface whose distance is kept in AltHold, Loiter, PosHold and ZigZag by the downward rangefinder"),
+    real!("SURFTRAK_TC", None, 0.05..=5.0, surroundings.surface.smoothing_s, "s", "Time constant with which heights of the surface are followed"),
     switch!("ADSB_TYPE", surroundings.traffic.heard, "Receiver of transponders"),
     switch!("AVD_ENABLE", surroundings.traffic.enabled, "Look at traffic that comes near"),
     choice!("AVD_F_ACTION", ARDUPILOT_TRAFFIC, surroundings.traffic.action, "Action when traffic comes too near"),
@@ -78,6 +81,16 @@ pub static ARDUPILOT_SURROUNDINGS: &[ConductParameter] = &[
     switch!("DID_OPTIONS", surroundings.remote_id_to_arm, "Options of remote identification", ["None", "Needed to arm"]),
 ];
 
+const ALTITUDE_MODES: &[(Tracking, i32, &str)] = &[
+    (Tracking::Off, 0, "Altitude"),
+    (Tracking::Ground, 1, "Height above the ground"),
+    (Tracking::Standing, 2, "Height above the ground while it stands in the air"),
+];
+const TRACKINGS: &[(Tracking, i32, &str)] = &[
+    (Tracking::Off, 0, "None"),
+    (Tracking::Ground, 1, "Ground"),
+    (Tracking::Ceiling, 2, "Ceiling; there is no upward rangefinder"),
+];
 const PX4_TRAFFIC: &[(Action, i32, &str)] = &[
     (Action::None, 0, "Nothing"),
     (Action::Warn, 1, "Warn"),

@@ -2,18 +2,21 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::command::DO_RETURN_PATH_START;
+use super::command::{DO_LAND_START, DO_RETURN_PATH_START};
 use super::{MissionItem, Site};
 
 /// Commands from here on are not flown.
 const LAST_FLOWN: u16 = 95;
 
-/// Number of the item at which a way back is joined from a place, NED, m: the end of the nearest of its legs.
+/// Number of the item at which a way back is joined from a place, NED, m: the end of the nearest of its legs. The landing behind it is
+/// no part of it.
 pub fn joined(items: &[MissionItem], site: &Site, here_m: &Vector3<f64>) -> Option<usize> {
     let starts = (0..items.len())
         .filter(|index| items.get(*index).is_some_and(|item| item.command == DO_RETURN_PATH_START));
     let legs = starts.flat_map(|start| {
+        let is_landing = |index: &usize| items.get(*index).is_some_and(|item| item.command == DO_LAND_START);
         let placed: Vec<(usize, Vector2<f64>)> = (start + 1..items.len())
+            .take_while(|index| !is_landing(index))
             .filter_map(|index| {
                 let item = items.get(index).filter(|item| item.command <= LAST_FLOWN)?;
                 Some((index, site.place(item)?.horizontal_m?.into()))

@@ -33,6 +33,8 @@ pub enum Function {
     Proximity,
     /// Switches what is done about traffic.
     Traffic,
+    /// Chooses the surface whose distance is kept: the ground at the low end, none in the middle.
+    SurfaceTracking,
     /// Switches a relay, counted from 0.
     Relay(u8),
     /// Grabs and releases.
@@ -104,6 +106,7 @@ const FUNCTIONS: &[(u32, Function)] = &[
     (71, Function::Mode(22)),
     (72, Function::Mode(7)),
     (73, Function::Mode(11)),
+    (75, Function::SurfaceTracking),
     (81, Function::Disarming),
     (99, Function::Mode(27)),
     (153, Function::Arming),

@@ -106,6 +106,9 @@ pub struct Conduct {
     /// Whether a mission that was left begins anew (ArduPilot: MIS_RESTART).
     #[serde(default)]
     pub mission_restarts: bool,
+    /// Options of missions, as ArduPilot's parameter adds them up (MIS_OPTIONS).
+    #[serde(default)]
+    pub mission_options: u8,
     /// What is checked before arming.
     #[serde(default)]
     pub arming: ArmingSettings,
@@ -227,6 +230,7 @@ impl Conduct {
             follow: FollowSettings::default(),
             trail: TrailSettings::default(),
             mission_restarts: false,
+            mission_options: 0,
             arming: ArmingSettings::default(),
             failsafe: FailsafeSettings::new(ardupilot),
             simulated: Simulated::default(),

@@ -21,7 +21,6 @@ use super::obstacle_watch::ObstacleWatch;
 use super::offboard::Offboard;
 use super::orbit::Orbit;
 use super::parachute_watch::ParachuteWatch;
-use super::pilot_takeoff::PilotTakeoff;
 use super::pilot_watch::PilotWatch;
 use super::precision_landing::PrecisionLanding;
 use super::pushes::PushClock;
@@ -33,6 +32,7 @@ use super::settings::VehicleSettings;
 use super::simple_flight::SimpleFlight;
 use super::smart_return::SmartReturn;
 use super::speeds::Speeds;
+use super::stick_climb::StickClimb;
 use super::stick_flight::StickFlight;
 use super::takeoff::Takeoff;
 use super::takeoff_check::TakeoffCheck;
@@ -73,8 +73,8 @@ pub struct Machines {
     pub motor_tests: MotorTests,
     /// Takeoffs.
     pub takeoff: Takeoff,
-    /// Takeoffs by hand.
-    pub pilot_takeoff: PilotTakeoff,
+    /// What changes the climb rate of the throttle.
+    pub climb: StickClimb,
     /// What the rotors have against one.
     pub takeoff_check: TakeoffCheck,
     /// Throws.
@@ -151,7 +151,7 @@ impl Machines {
             ),
             motor_tests: MotorTests::default(),
             takeoff: Takeoff::default(),
-            pilot_takeoff: PilotTakeoff::default(),
+            climb: StickClimb::default(),
             takeoff_check: TakeoffCheck::default(),
             throw: Throw::default(),
             flip: Flip::default(),

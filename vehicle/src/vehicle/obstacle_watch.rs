@@ -8,6 +8,7 @@ use super::proposal::Proposal;
 use super::proximity_keeping::keep_away;
 use super::set_point::{AxisTarget, PositionSetPoint};
 use super::situation::Situation;
+use super::surface_tracking::Surface;
 use crate::mode::{Leader, Mode};
 use crate::surroundings::{Aircraft, Obstacle, RangeScan, Reading, SECTOR_RAD, SECTORS};
 
@@ -41,8 +42,9 @@ pub struct ObstacleWatch {
     lidar: Option<RangeScan>,
     /// What a companion computer has told, the latest last. Each has its own time and place.
     companion: Vec<RangeScan>,
-    /// Distance below, m.
+    /// Distance below, m, and what it is the distance to.
     below_m: Option<f64>,
+    surface: Option<Surface>,
     /// Whether it is kept from going on.
     stopped: bool,
     /// When it was stopped last, µs.
@@ -100,6 +102,11 @@ impl ObstacleWatch {
         self.below_m
     }
 
+    /// What it shows, if it is switched on.
+    pub fn surface(&self) -> Option<Surface> {
+        self.surface.filter(|_| !self.rangefinder_off)
+    }
+
     /// Whether there is a rangefinder.
     pub fn has_rangefinder(&self, situation: &Situation) -> bool {
         let world = !self.obstacles.is_empty() || !situation.terrain.is_flat();
@@ -150,6 +157,11 @@ impl ObstacleWatch {
         }
         if self.has_rangefinder(situation) {
             self.below_m = self.look_down(situation);
+            let down_z = (outputs.orientation() * Vector3::z()).z;
+            self.surface = self.below_m.map(|below_m| Surface {
+                z_m: outputs.position_m.z + below_m * down_z,
+                time_us: situation.time_us,
+            });
         }
         if !self.obstacles.is_empty() {
             self.lidar = Some(RangeScan::of_obstacles(

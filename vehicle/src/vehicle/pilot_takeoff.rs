@@ -17,9 +17,9 @@ pub struct PilotTakeoff {
 }
 
 impl PilotTakeoff {
-    /// Another mode begins, or the rotors stop.
-    pub fn forget(&mut self) {
-        self.goal_z_m = None;
+    /// Whether one goes on.
+    pub fn goes_on(&self) -> bool {
+        self.goal_z_m.is_some()
     }
 
     /// The climb rate that is flown where the pilot asks for one, m/s. A lowered throttle ends the takeoff.

@@ -10,6 +10,7 @@ use super::proposal::{Proposal, Request};
 use super::receiver::Pilot;
 use super::situation::Situation;
 use super::steering::Steering;
+use super::surface_tracking::Surface;
 use crate::estimation::{InstrumentHealth, Validity};
 use crate::fence::Zones;
 use crate::identity::Identity;
@@ -36,6 +37,7 @@ pub struct Scene {
     pub landed: bool,
     pub lost_rotor: Option<usize>,
     pub landing_target_m: Option<[f64; 2]>,
+    pub surface: Option<Surface>,
     pub set_points_are_recent: bool,
     pub mission_goes_on: bool,
     pub has_trail: bool,
@@ -94,6 +96,7 @@ impl Scene {
             landed: false,
             lost_rotor: None,
             landing_target_m: None,
+            surface: None,
             set_points_are_recent: false,
             mission_goes_on: false,
             has_trail: false,
@@ -167,6 +170,7 @@ impl Scene {
             landed: self.landed,
             lost_rotor: self.lost_rotor,
             landing_target_m: self.landing_target_m,
+            surface: self.surface,
             breach: None,
             fence_is_ahead: false,
             fence_is_on: self.conduct.failsafe.fence_enabled,

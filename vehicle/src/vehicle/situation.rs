@@ -10,6 +10,7 @@ use super::notice::Refusal;
 use super::receiver::Pilot;
 use super::region::RegionOfInterest;
 use super::steering::{Steering, SteeringKind};
+use super::surface_tracking::Surface;
 use crate::estimation::{InstrumentHealth, Validity};
 use crate::fault::Sensor;
 use crate::fence::{Breach, Fence, Zones};
@@ -83,6 +84,8 @@ pub struct Situation<'a> {
     pub lost_rotor: Option<usize>,
     /// North and east of a target that landings go to, m.
     pub landing_target_m: Option<[f64; 2]>,
+    /// What the rangefinder sees below, if it sees anything.
+    pub surface: Option<Surface>,
     /// What of the fence is breached, or is about to be.
     pub breach: Option<Breach>,
     /// Whether that still lies ahead.

@@ -207,22 +207,22 @@ impl Vehicle {
             Mode::Takeoff => parts.takeoff.step(situation, proposal),
             Mode::Hold => {}
             Mode::Position => {
-                fly_by_velocity(&mut parts.pilot_takeoff, situation, proposal);
+                fly_by_velocity(&mut parts.climb, situation, proposal);
                 parts.precision.stay_above(situation, proposal);
             }
             Mode::Flip => parts.flip.step(situation, proposal),
-            Mode::ZigZag => parts.zigzag.step(&mut parts.pilot_takeoff, situation, proposal),
+            Mode::ZigZag => parts.zigzag.step(&mut parts.climb, situation, proposal),
             Mode::PositionHold
                 if situation.pilot.sticks.is_some_and(|sticks| sticks.leans(&situation.conduct.sticks)) =>
             {
-                parts.stick_flight.step_by_height(&mut parts.pilot_takeoff, situation, proposal);
+                parts.stick_flight.step_by_height(&mut parts.climb, situation, proposal);
             }
             Mode::PositionHold => {
                 parts.stick_flight.forget();
-                fly_by_velocity(&mut parts.pilot_takeoff, situation, proposal);
+                fly_by_velocity(&mut parts.climb, situation, proposal);
             }
             Mode::Altitude => {
-                parts.stick_flight.step_by_height(&mut parts.pilot_takeoff, situation, proposal);
+                parts.stick_flight.step_by_height(&mut parts.climb, situation, proposal);
             }
             Mode::Stabilize | Mode::Manual | Mode::Acro => {
                 parts.stick_flight.step_by_thrust(situation, proposal);
@@ -390,6 +390,7 @@ fn situation<'a>(
         landed: landing.is_landed(),
         lost_rotor: machines.rotors.lost_rotor(),
         landing_target_m: machines.precision.place_m(&conduct.precision),
+        surface: machines.obstacles.surface(),
         breach: machines.fence.record().now,
         fence_is_ahead: machines.fence.record().is_ahead,
         fence_is_on: conduct.failsafe.fence_enabled || machines.fence.is_on_by_itself(),

@@ -4,11 +4,11 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::height_hold::HeightHold;
 use super::motion::wrapped;
-use super::pilot_takeoff::PilotTakeoff;
 use super::proposal::Proposal;
 use super::set_point::AttitudeSetPoint;
 use super::situation::Situation;
 use super::steering::SteeringKind;
+use super::stick_climb::StickClimb;
 use super::stick_settings::Trainer;
 use super::sticks::Sticks;
 use super::tick::TICK_S;
@@ -61,14 +61,9 @@ impl StickFlight {
     }
 
     /// One tick of a mode in which the throttle is the climb rate.
-    pub fn step_by_height(
-        &mut self,
-        takeoff: &mut PilotTakeoff,
-        situation: &Situation,
-        proposal: &mut Proposal,
-    ) {
+    pub fn step_by_height(&mut self, climb: &mut StickClimb, situation: &Situation, proposal: &mut Proposal) {
         let sticks = Self::sticks(situation);
-        let climb_m_s = takeoff.climb_m_s(situation, sticks.climb_m_s(situation.conduct));
+        let climb_m_s = climb.climb_m_s(situation, sticks.climb_m_s(situation.conduct));
         if situation.landed && climb_m_s <= 0.0 {
             self.rest(situation, proposal);
             return;

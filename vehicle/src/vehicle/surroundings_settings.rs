@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::failsafe::Action;
+use super::surface_tracking::SurfaceSettings;
 use crate::mode::Mode;
 
 /// Parameters of it. Each field says whose they are.
@@ -31,6 +32,9 @@ pub struct SurroundingsSettings {
     pub rangefinder_farthest_m: f64,
     /// Nearest that it measures, m (ArduPilot: RNGFND1_MIN).
     pub rangefinder_nearest_m: f64,
+    /// When the height above the ground is kept.
+    #[serde(default)]
+    pub surface: SurfaceSettings,
     /// What is done about traffic.
     pub traffic: TrafficSettings,
     /// Whether it identifies itself (ArduPilot: DID_ENABLE; PX4: COM_ARM_ODID above 0).
@@ -113,6 +117,7 @@ impl Default for SurroundingsSettings {
             rangefinder_kind: 0,
             rangefinder_farthest_m: 40.0,
             rangefinder_nearest_m: 0.2,
+            surface: SurfaceSettings::new(false),
             traffic: TrafficSettings {
                 heard: true,
                 enabled: true,
@@ -152,6 +157,14 @@ impl SurroundingsSettings {
             warning_ahead_s: 30.0,
             ..px4.traffic
         };
-        Self { obstacle_distance_m: 2.0, obstacle_delay_s: 0.0, go_without_data: true, traffic, ..px4 }
+        let surface = SurfaceSettings::new(true);
+        Self {
+            obstacle_distance_m: 2.0,
+            obstacle_delay_s: 0.0,
+            go_without_data: true,
+            surface,
+            traffic,
+            ..px4
+        }
     }
 }

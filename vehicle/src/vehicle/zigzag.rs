@@ -14,11 +14,11 @@ use super::fence_watch::check_goal;
 use super::manual_control::fly_by_velocity;
 use super::motion::Motion;
 use super::notice::Severity;
-use super::pilot_takeoff::PilotTakeoff;
 use super::proposal::Proposal;
 use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::situation::Situation;
 use super::steering::Steering;
+use super::stick_climb::StickClimb;
 use super::tick::TICK_S;
 
 /// Nearer than this to where it goes, m, it has arrived once its reference rests.
@@ -83,9 +83,9 @@ impl ZigZag {
     }
 
     /// One tick of the mode.
-    pub fn step(&mut self, takeoff: &mut PilotTakeoff, situation: &Situation, proposal: &mut Proposal) {
+    pub fn step(&mut self, climb: &mut StickClimb, situation: &Situation, proposal: &mut Proposal) {
         if self.goes_to.is_none() {
-            fly_by_velocity(takeoff, situation, proposal);
+            fly_by_velocity(climb, situation, proposal);
         } else if situation.landed || self.has_waited(situation, proposal) {
             self.goes_to = None;
             proposal.say(Severity::Info, "ZigZag: manual control");

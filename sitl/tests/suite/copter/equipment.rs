@@ -292,10 +292,15 @@ fn a_mount_looks_at_places_and_at_other_systems_within_its_limits() {
     pitches(&mut flier, PLACE, -52.0, 5.0);
     flier.set("MNT1_PITCH_MIN", -45.0);
     pitches(&mut flier, PLACE, -45.0, 0.1);
-    assert_eq!(flier.command(MavCmd::MAV_CMD_DO_SET_ROI_NONE, [0.0; 7]), ACCEPTED);
-    flier.fly(0.2);
-    let [_, pitch, _] = mount_deg(&mut flier);
-    assert!(pitch.abs() < 1.0, "the radio points it again: {pitch}");
+    // Suite: clear_roi. A place of zeros is none, too.
+    for none in [MavCmd::MAV_CMD_DO_SET_ROI_LOCATION, MavCmd::MAV_CMD_DO_SET_ROI_NONE] {
+        assert_eq!(flier.command(MavCmd::MAV_CMD_DO_SET_ROI_LOCATION, at), ACCEPTED);
+        pitches(&mut flier, PLACE, -45.0, 0.1);
+        assert_eq!(flier.command(none, [0.0; 7]), ACCEPTED);
+        flier.fly(0.2);
+        let [_, pitch, _] = mount_deg(&mut flier);
+        assert!(pitch.abs() < 1.0, "the radio points it again: {pitch}");
+    }
 
     let track = [7.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     let ground_m = flier.vehicle().frame().origin().altitude_m;

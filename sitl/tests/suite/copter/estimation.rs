@@ -97,6 +97,24 @@ fn a_mission_is_flown_through_an_outage_and_jumps_of_the_receiver() {
     assert!(flier.vehicle().truth().position_m.xy().norm() < 10.0);
 }
 
+/// How far north of the truth the estimate is after some seconds at eight metres per second, m, with fixes that come so late.
+fn leads_m(late_ms: f64) -> f64 {
+    let mut flier = with_instruments();
+    flier.set_all(&[("SIM_GPS1_HZ", 5.0), ("SIM_GPS1_LAG_MS", late_ms)]);
+    flier.take_off(20.0, LOITER);
+    flier.rc(2, 1100);
+    flier.fly(10.0);
+    assert!(flier.vehicle().truth().velocity_m_s.x > 7.0, "{}", flier.vehicle().truth().velocity_m_s);
+    flier.vehicle().outputs().position_m.x - flier.vehicle().truth().position_m.x
+}
+
+/// The estimator knows when a fix was taken: 0.3 s later, it would be 2 m behind. The receivers' noise is the same.
+#[test]
+fn fixes_that_come_late_are_taken_for_the_time_at_which_they_were_taken() {
+    let [early_m, late_m] = [0.0, 300.0].map(leads_m);
+    assert!((early_m - late_m).abs() < 0.7, "{early_m} m, {late_m} m");
+}
+
 /// Suite: GPSGlitchLoiter: jumps of the receiver, 30 to 110 m, each for less than half a second.
 #[test]
 fn jumps_of_the_receiver_do_not_lead_away_a_vehicle_that_loiters() {

@@ -2,7 +2,7 @@
 
 use super::flier::*;
 use crate::common::settings;
-use mavlink::dialects::ardupilotmega::MavCmd;
+use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage};
 use vehicle::identity::Identity;
 use vehicle::plan::{PlanKind, command};
 
@@ -63,6 +63,81 @@ fn a_mission_pauses_and_goes_on_however_often_it_is_asked() {
         }
     }
     flier.wait_home();
+}
+
+/// The current item, as MISSION_CURRENT tells it.
+fn current(flier: &mut Flier) -> u16 {
+    flier.bench.heard.clear();
+    flier.fly(1.2);
+    let told = flier.latest(|message| match message {
+        MavMessage::MISSION_CURRENT(current) => Some(current.seq),
+        _ => None,
+    });
+    told.expect("it is told each second")
+}
+
+fn go_on(flier: &mut Flier, command: MavCmd) -> u8 {
+    flier.command(command, [0.0; 7])
+}
+
+/// Suite: AutoRTL. The way back is joined where it is nearest, but not behind the beginning of the landing; what follows DO_LAND_START is a
+/// way of its own. Here all is a tenth as far.
+#[test]
+fn a_mission_has_a_way_back_and_a_landing() {
+    const AUTO_RTL: u32 = 27;
+    let (back, landing) = (MavCmd::MAV_CMD_DO_RETURN_PATH_START, MavCmd::MAV_CMD_DO_LAND_START);
+    let rows = [
+        (WAYPOINT, 125.0, 0.0, 50.0),
+        (command::DO_RETURN_PATH_START, 0.0, 0.0, 0.0),
+        (WAYPOINT, 90.0, 0.0, 50.0),
+        (WAYPOINT, 75.0, 0.0, 50.0),
+        (WAYPOINT, 55.0, 0.0, 50.0),
+        (WAYPOINT, 50.0, 0.0, 50.0),
+        (command::DO_LAND_START, 0.0, 0.0, 0.0),
+        (WAYPOINT, 25.0, 0.0, 50.0),
+        (WAYPOINT, -25.0, 0.0, 50.0),
+    ];
+    let mut flier = with_mission(&rows);
+    flier.take_off(50.0, GUIDED);
+    assert_eq!((go_on(&mut flier, back), current(&mut flier)), (ACCEPTED, 6), "above home");
+    assert_eq!((go_on(&mut flier, landing), current(&mut flier)), (ACCEPTED, 8));
+    assert_eq!(flier.vehicle().shown_mode(), vehicle::Mode::MissionLanding);
+    flier.change_mode(GUIDED);
+    fly_north(&mut flier, 100.0);
+    assert_eq!((go_on(&mut flier, back), current(&mut flier)), (ACCEPTED, 3));
+    flier.change_mode(GUIDED);
+    fly_north(&mut flier, 60.0);
+    assert_eq!(flier.ask_mode(AUTO_RTL), ACCEPTED);
+    assert_eq!(current(&mut flier), 5);
+}
+
+/// Flies to a place north of home, m, 50 m up.
+fn fly_north(flier: &mut Flier, north_m: f32) {
+    let target = crate::common::requests::local_target(0b1101_1111_1000, [north_m, 0.0, -50.0], [0.0; 3]);
+    flier.bench.send(target);
+    flier.wait("the place", 60.0, |flier| (flier.distance_m() - f64::from(north_m)).abs() < 1.0);
+}
+
+/// Without a mission neither is there.
+#[test]
+fn without_a_mission_there_is_no_way_back() {
+    let mut flier = Flier::new();
+    flier.take_off(10.0, GUIDED);
+    for command in [MavCmd::MAV_CMD_DO_RETURN_PATH_START, MavCmd::MAV_CMD_DO_LAND_START] {
+        assert_eq!(go_on(&mut flier, command), FAILED);
+    }
+}
+
+/// Suite: MISSION_OPTION_CLEAR_MISSION_AT_BOOT.
+#[test]
+fn a_boot_clears_the_mission_if_it_is_to() {
+    let mut flier = with_mission(&[(TAKEOFF, 0.0, 0.0, 20.0), (RETURN, 0.0, 0.0, 0.0)]);
+    let count = |flier: &Flier| flier.vehicle().plans().get(PlanKind::Mission).items().len();
+    flier.reboot();
+    assert_eq!(count(&flier), 3);
+    flier.set("MIS_OPTIONS", 1.0);
+    flier.reboot();
+    assert_eq!(count(&flier), 0);
 }
 
 /// Suite: MissionIndexValidity, InvalidJumpTags.

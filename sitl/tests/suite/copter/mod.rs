@@ -13,6 +13,7 @@ mod payload;
 mod precision;
 mod proximity;
 mod sticks;
+mod surface;
 mod switches;
 mod telemetry;
 mod wind;

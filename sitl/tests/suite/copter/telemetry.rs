@@ -124,6 +124,8 @@ fn it_introduces_itself_when_it_is_asked() {
     let banner = MavCmd::MAV_CMD_DO_SEND_BANNER;
     assert_eq!(flier.command(banner, [0.0; 7]), ACCEPTED);
     assert!(flier.has_said("simulated quadrotor"), "{:?}", flier.bench.texts());
+    // DroneKit's tests look for the name of the vehicle.
+    assert!(flier.has_said("ArduCopter"), "{:?}", flier.bench.texts());
     flier.bench.heard.clear();
     flier.bench.send(MavMessage::AUTOPILOT_VERSION_REQUEST(AUTOPILOT_VERSION_REQUEST_DATA {
         target_system: 1,
@@ -134,6 +136,36 @@ fn it_introduces_itself_when_it_is_asked() {
         _ => None,
     });
     assert!(version.is_some_and(|version| version >> 24 == 4), "{version:?}");
+}
+
+/// Suite: UTMGlobalPosition, UTMGlobalPositionWaypoint.
+#[test]
+fn a_traffic_management_is_told_where_it_flies_to() {
+    let mut flier = Flier::new();
+    let asked = |flier: &mut Flier| {
+        let parameters = [UTM_GLOBAL_POSITION_DATA::ID as f32, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        flier.bench.heard.clear();
+        assert_eq!(flier.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, parameters), ACCEPTED);
+        let told = flier.latest(|message| match message {
+            MavMessage::UTM_GLOBAL_POSITION(position) => Some(position.clone()),
+            _ => None,
+        });
+        told.expect("it was asked for")
+    };
+    let next = UtmDataAvailFlags::UTM_DATA_AVAIL_FLAGS_NEXT_WAYPOINT_AVAILABLE;
+    let ground = asked(&mut flier);
+    assert_eq!(ground.flight_state, UtmFlightState::UTM_FLIGHT_STATE_GROUND);
+    assert!(!ground.flags.contains(next) && ground.uas_id.iter().any(|byte| *byte != 0), "{ground:?}");
+    flier.take_off(20.0, GUIDED);
+    let place = crate::common::requests::local_target(0b1101_1111_1000, [100.0, 0.0, -20.0], [0.0; 3]);
+    flier.bench.send(place);
+    flier.fly(1.0);
+    let flying = asked(&mut flier);
+    assert_eq!(flying.flight_state, UtmFlightState::UTM_FLIGHT_STATE_AIRBORNE);
+    // 100 m are 8993 units of latitude on a sphere, and within 1 % of that on the ellipsoid.
+    let way = flying.next_lat - ground.lat;
+    assert!(flying.flags.contains(next) && way.abs_diff(8993) < 90, "{way}");
+    assert!((flying.relative_alt - 20_000).abs() < 1500 && flying.vx > 50, "{flying:?}");
 }
 
 /// PREFLIGHT_CALIBRATION, parameter 4: the ground station sees the pulses, and sticks arm nothing until it is over.

@@ -124,7 +124,7 @@ impl Vehicle {
         self.machines.turn.forget();
         self.machines.offboard.begin();
         self.machines.stick_flight.forget();
-        self.machines.pilot_takeoff.forget();
+        self.machines.climb.forget();
         self.consult(|parts, situation, proposal| match mode {
             Mode::Hold | Mode::Position | Mode::PositionHold => proposal.hold(situation),
             Mode::Offboard if !situation.set_points_are_recent => proposal.hold(situation),
@@ -169,7 +169,7 @@ impl Vehicle {
         self.machines.failsafe.release();
         self.machines.failsafe.forget(Cause::SetPointsLost);
         self.machines.takeoff.forget();
-        self.machines.pilot_takeoff.forget();
+        self.machines.climb.forget();
         self.machines.turn.forget();
         let speeds = self.machines.speeds.after(SpeedChange::Return(None));
         self.use_speeds_or_say(speeds.after(SpeedChange::ForgetCommands));

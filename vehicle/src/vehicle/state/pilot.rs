@@ -5,6 +5,7 @@ use super::super::pilot_watch::Wish;
 use super::super::receiver::{Pilot, Pulses};
 use super::super::simple_flight::StickReference;
 use super::super::sticks::Sticks;
+use super::super::surface_tracking::Tracking;
 use super::super::tick::TICK_S;
 use super::super::zigzag::End;
 use super::Vehicle;
@@ -194,6 +195,7 @@ impl Vehicle {
                 | Function::ParachuteRelease,
                 position,
             ) => operation(function, position).map_or(Ok(()), |operation| self.operate(&operation)),
+            (Function::SurfaceTracking, position) => self.choose_surface(position),
             (Function::PrecisionLoiter, position) => {
                 self.machines.precision.let_loiter(position == Position::High);
                 Ok(())
@@ -203,6 +205,24 @@ impl Vehicle {
                 Ok(())
             }
         }
+    }
+
+    /// Low is the ground, the middle nothing, and high what is above, which nothing sees.
+    fn choose_surface(&mut self, position: Position) -> Result<(), Refusal> {
+        let tracking = match position {
+            Position::Low if self.has_rangefinder() => Tracking::Ground,
+            Position::Middle => Tracking::Off,
+            Position::Low => {
+                return Err(Refusal::Failed("SurfaceTracking: no downward rangefinder".to_owned()));
+            }
+            Position::High => {
+                return Err(Refusal::Failed("SurfaceTracking: no upward rangefinder".to_owned()));
+            }
+        };
+        let mut conduct = *self.conduct();
+        conduct.surroundings.surface.tracking = tracking;
+        self.setup.set_conduct(conduct);
+        Ok(())
     }
 
     /// Low disables the parachute, the middle enables it, and high releases it, too.

@@ -133,6 +133,30 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal`] without such a landing, and as [`Vehicle::start_mission`].
     pub fn start_landing(&mut self) -> Result<(), Refusal> {
+        let (site, here_m) = (self.site(), self.outputs().position_m);
+        let start = landing_start(self.plans().get(PlanKind::Mission).items(), &site, &here_m);
+        self.join(start, "DO_LAND_START")?;
+        self.machines.failsafe.release();
+        Ok(())
+    }
+
+    /// Goes on with the mission's way back, what follows DO_RETURN_PATH_START, where that is nearest.
+    ///
+    /// # Errors
+    /// [`Refusal`] without such a way, and as [`Vehicle::start_mission`].
+    pub fn start_return_path(&mut self) -> Result<(), Refusal> {
+        let (site, here_m) = (self.site(), self.outputs().position_m);
+        let joined = return_path::joined(self.plans().get(PlanKind::Mission).items(), &site, &here_m);
+        self.join(joined, "DO_RETURN_PATH_START")?;
+        self.machines.failsafe.release();
+        Ok(())
+    }
+
+    /// Goes on with the mission's way back, or else with its landing (Auto RTL).
+    ///
+    /// # Errors
+    /// [`Refusal`] without either, and as [`Vehicle::start_mission`].
+    pub(super) fn return_by_mission(&mut self) -> Result<(), Refusal> {
         self.join_landing()?;
         self.machines.failsafe.release();
         Ok(())
@@ -143,9 +167,12 @@ impl Vehicle {
         let (site, here_m) = (self.site(), self.outputs().position_m);
         let items = self.plans().get(PlanKind::Mission).items();
         let joined = return_path::joined(items, &site, &here_m);
-        let index = joined.or_else(|| landing_start(items, &site, &here_m)).ok_or_else(|| {
-            Refusal::Failed("Landing rejected: the mission has no DO_LAND_START".to_owned())
-        })?;
+        self.join(joined.or_else(|| landing_start(items, &site, &here_m)), "DO_LAND_START")
+    }
+
+    fn join(&mut self, index: Option<usize>, wanted: &str) -> Result<(), Refusal> {
+        let index =
+            index.ok_or_else(|| Refusal::Failed(format!("Landing rejected: the mission has no {wanted}")))?;
         self.fly_mission(Some(index))?;
         if self.identity().is_ardupilot() {
             self.machines.mission.land();

@@ -3,6 +3,10 @@
 use super::super::settings::VehicleSettings;
 use super::Vehicle;
 use crate::fault::ScheduledFault;
+use crate::plan::{Plan, PlanKind};
+
+/// Of the options of missions.
+const CLEARS_MISSION: u8 = 1;
 
 impl Vehicle {
     /// What the vehicle boots with again: it was made of `settings`, and keeps its parameters and its plans. Everything else begins
@@ -18,11 +22,15 @@ impl Vehicle {
             let time_us = fault.time_us.checked_sub(now_us)?;
             Some(ScheduledFault { time_us, ..*fault })
         };
+        let mut plans = self.plans().clone();
+        if self.conduct().mission_options & CLEARS_MISSION != 0 {
+            plans.set(PlanKind::Mission, Plan::default());
+        }
         VehicleSettings {
             configuration,
             conduct: *self.conduct(),
             faults: settings.faults.iter().filter_map(later).collect(),
-            plans: self.plans().clone(),
+            plans,
             ..settings.clone()
         }
     }

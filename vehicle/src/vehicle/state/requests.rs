@@ -212,7 +212,7 @@ impl Vehicle {
             Mode::MissionLanding if !situation.flies() => {
                 return Err(Refusal::Failed("Auto RTL mode rejected: not flying".to_owned()));
             }
-            Mode::MissionLanding => return self.start_landing(),
+            Mode::MissionLanding => return self.return_by_mission(),
             Mode::Offboard if !identity.is_ardupilot() && !situation.set_points_are_recent => {
                 return Err(Refusal::later("Offboard mode rejected: no recent set-point"));
             }
