@@ -125,10 +125,10 @@ impl Planner<'_> {
         }
         let climb_m = ends_m.first().and_then(|first_m| self.climb_m(first_m.z));
         let pieces_m = curve_places_m(climb_m.unwrap_or(self.at_m), &ends_m, Bend::Wide);
-        for (((item, _), end_m), mut through_m) in curve.iter().zip(ends_m).zip(pieces_m) {
+        for (((item, _), end_m), mut through_m) in curve.iter().zip(&ends_m).zip(pieces_m) {
             through_m.pop();
             through_m.splice(0..0, climb_m.filter(|_| self.legs.is_empty()));
-            self.arrive(*item, through_m, end_m);
+            self.arrive(*item, through_m, *end_m);
         }
     }
 }
