@@ -42,8 +42,9 @@ impl PlantSimulation {
         inputs: &PlantInputs,
     ) -> Result<Self, ConfigurationError> {
         let state = PlantSimulationState { time_us: 0, event_us: 0, plant: *start, inputs: *inputs };
-        validate_start_over(configuration, inputs.ground_z_m)?;
-        Self::from_state(configuration, state)
+        let simulation = Self::from_state(configuration, state)?;
+        validate_start_over(configuration, &start.body, inputs.ground_z_m)?;
+        Ok(simulation)
     }
 
     /// A flight that goes on from a saved state of a flight with the same configuration.

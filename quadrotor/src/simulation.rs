@@ -49,8 +49,8 @@ impl Simulation {
     /// [`ConfigurationError::Measurement`], and [`ConfigurationError::BelowGround`] over the ground of the inputs.
     pub fn prepared(prepared: &PreparedDesign, inputs: &Inputs) -> Result<Self, ConfigurationError> {
         let configuration = prepared.configuration();
-        validate_start_over(configuration, inputs.ground_z_m)?;
         let mut world = World::new(configuration, inputs);
+        validate_start_over(configuration, &world.plant.body, inputs.ground_z_m)?;
         let mut sensors = sensors(&configuration.sensors, &mut world);
         let control = ControlLoop::prepared(prepared, &inputs.control(), &mut sensors, 0)?;
         Ok(Self::of(control, world))

@@ -11,7 +11,7 @@ pub(super) const IDENTITY: Identity = Identity {
         (Chipofya, Lee and Chong 2015), climbing from the origin",
     // A climb by 30 m.
     default_experiment: Experiment { stop_time_s: 10.0, step_size_s: 0.01 },
-    saved_state: SavedStateFormat { magic: *b"QUADPLNT", version: 3 },
+    saved_state: SavedStateFormat { magic: *b"QUADPLNT", version: 4 },
     words: Words {
         run: "flight",
         retuned: "parameters changed",

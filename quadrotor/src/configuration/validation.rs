@@ -4,7 +4,7 @@ use crate::design::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE
 use crate::plant::ground::greatest_start_z_m;
 use crate::{
     Airframe, AirframePreset, Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer,
-    Mutability, PARAMETERS, Parameter, Quantity,
+    Mutability, PARAMETERS, Parameter, PlantState, Quantity, RigidBody,
 };
 
 /// Checks every parameter against its range and the values that depend on one another.
@@ -247,19 +247,21 @@ fn validate_spin(configuration: &Configuration, torques_n_m: [f64; 3]) -> Result
 
 /// A flight over ground starts above it, in the attitude that it starts with.
 fn validate_start(configuration: &Configuration) -> Result<(), ConfigurationError> {
-    validate_start_over(configuration, 0.0)
+    let start = PlantState::at_rest(&configuration.initial);
+    validate_start_over(configuration, &start.body, 0.0)
 }
 
-/// The same over ground at a height, `ground_z_m`, NED. One that is not finite is refused by the first step.
+/// A body starts above ground at a height, `ground_z_m`, NED. One that is not finite is refused by the first step.
 pub(crate) fn validate_start_over(
     configuration: &Configuration,
+    body: &RigidBody,
     ground_z_m: f64,
 ) -> Result<(), ConfigurationError> {
     if !configuration.environment.ground_plane || !ground_z_m.is_finite() {
         return Ok(());
     }
-    let [_, _, z_m] = configuration.initial.position_m;
-    let greatest_m = greatest_start_z_m(&configuration.airframe, &configuration.initial, ground_z_m);
+    let z_m = body.position_m.z;
+    let greatest_m = greatest_start_z_m(&configuration.airframe, body, ground_z_m);
     if z_m <= greatest_m {
         Ok(())
     } else {

@@ -25,7 +25,8 @@ impl PreparedDesign {
     }
 
     /// The design of another configuration: that of [`PreparedDesign::new`], with what does not depend on the difference taken over from
-    /// this one instead of being designed again. Where a flight starts, for example, changes no controller.
+    /// this one instead of being designed again. Where a flight starts, for example, changes no controller. Zeros of either sign count
+    /// as the same.
     ///
     /// # Errors
     /// Those of [`PreparedDesign::new`].

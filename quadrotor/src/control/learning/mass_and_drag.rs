@@ -8,7 +8,6 @@ use crate::control::learning::excitation::{Excitation, Shown};
 use crate::control::learning::motion_equation::{
     MEMORY_S, MeasuredMotion, MotionEquation, Sampled, Terms, noise_of_positions, noise_of_velocities,
 };
-use crate::design::controller_limits::thrust_range_n;
 use crate::{Configuration, GRAVITY_M_S2, Sensors, wrench_of_rotors};
 
 /// Learned: μ, the airframe's mass over the learned one; κ, drag per mass along north, east and down, 1/s; d, the
@@ -18,7 +17,7 @@ type Unknowns = SVector<f64, UNKNOWNS>;
 
 /// Range of the learned mass, as a multiple of the airframe's.
 const MASS_RANGE: [f64; 2] = [0.4, 2.5];
-/// Share of the largest thrust that a learned mass may weigh.
+/// Share of the rotors' largest thrust that a learned mass may weigh.
 const LIFTED_SHARE: f64 = 0.9;
 /// Most inertia that a learned mass stands for, as a multiple of the configured one.
 const MOST_INERTIA_SHARE: f64 = 2.0;
@@ -386,7 +385,8 @@ fn believed(configuration: &Configuration) -> Unknowns {
 /// more is a force.
 fn mass_range(configuration: &Configuration) -> [f64; 2] {
     let [lightest, heaviest] = MASS_RANGE;
-    let lifted = LIFTED_SHARE * thrust_range_n(configuration).1 / configuration.airframe.weight_n();
+    let (_, strongest_n) = configuration.airframe.thrust_range_n();
+    let lifted = LIFTED_SHARE * strongest_n / configuration.airframe.weight_n();
     let believed = configuration.controllers.mass_factor;
     [lightest, heaviest.min(lifted).max(1.0).max(believed)]
 }
