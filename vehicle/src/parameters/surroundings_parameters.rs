@@ -84,7 +84,7 @@ pub static ARDUPILOT_SURROUNDINGS: &[ConductParameter] = &[
 const ALTITUDE_MODES: &[(Tracking, i32, &str)] = &[
     (Tracking::Off, 0, "Altitude"),
     (Tracking::Ground, 1, "Height above the ground"),
-    (Tracking::Standing, 2, "Height above the ground while it stands in the air"),
+    (Tracking::Standing, 2, "Height above the ground while it hovers"),
 ];
 const TRACKINGS: &[(Tracking, i32, &str)] = &[
     (Tracking::Off, 0, "None"),
