@@ -120,7 +120,7 @@ pub(super) const ARMED: [Variable<Controller>; 1] = references::armed();
 
 /// What the vehicle flies above.
 pub(super) const GROUND: [Variable<Controller>; 1] = ground::ground(
-    "Height of the ground below the vehicle, down: -5 is a plateau 5 m above the origin; nothing is learned of a flight close to it",
+    "z of the ground below the vehicle (positive down): -5 is a plateau 5 m above the origin; nothing is learned close to the ground",
 );
 
 /// What is measured, as vectors.

@@ -40,5 +40,5 @@ pub(crate) const fn ground<M: Model<Inputs: Grounded>>(description: &'static str
 }
 
 /// What the height of the ground means to a plant.
-pub(crate) const OF_PLANT: &str = "Height of the ground below the vehicle, down: -5 is a plateau 5 m above the origin; level as far as feet and rotors \
-    reach; without effect without environment.ground_plane";
+pub(crate) const OF_PLANT: &str = "z of the ground below the vehicle (positive down): -5 is a plateau 5 m above the origin; taken as level under feet and \
+    rotors; no effect without environment.ground_plane";
