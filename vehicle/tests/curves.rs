@@ -90,6 +90,9 @@ impl Flight {
             let [before, now] = pair else { continue };
             let [v, a] = [now.velocity_m_s, now.acceleration_m_s2];
             let jerk = (a - before.acceleration_m_s2) / SAMPLE_S;
+            let gained = (v - before.velocity_m_s) / SAMPLE_S;
+            assert!(gained.xy().norm() < limits.acceleration_horizontal_m_s2, "{gained} {now:?}");
+            assert!(gained.z.abs() < limits.acceleration_vertical_m_s2, "{gained} {now:?}");
             assert!(v.xy().norm() < limits.speed_horizontal_m_s * 1.001, "{now:?}");
             assert!((-1.001 * limits.speed_up_m_s..1.001 * limits.speed_down_m_s).contains(&v.z), "{now:?}");
             assert!(a.xy().norm() < limits.acceleration_horizontal_m_s2, "{now:?}");
@@ -138,6 +141,100 @@ fn a_spline_is_flown_under_a_jerk_within_the_limit() {
         let past_m = past_m.fold(f64::INFINITY, f64::min);
         assert!(past_m < 0.05, "{past_m} m past {place_m}");
     }
+}
+
+/// Out to a place and back: there the way has no direction.
+#[test]
+fn on_ways_that_turn_back_it_comes_to_rest_between_them() {
+    type Ways = fn(&Vehicle) -> Vec<MissionItem>;
+    let spline: Ways = |_| {
+        let places_m =
+            [[30.0, 0.0, -HEIGHT_M], [0.0, 0.0, -HEIGHT_M], [20.0, 20.0, -HEIGHT_M], [-5.0, -4.0, -HEIGHT_M]];
+        places_m.map(|place_m| item(frame::LOCAL_NED, command::NAV_SPLINE_WAYPOINT, place_m)).to_vec()
+    };
+    let above_ground: Ways = |vehicle| {
+        let places_m = [[60.0, 0.0, HEIGHT_M], [0.0, 0.0, HEIGHT_M], [60.0, 10.0, HEIGHT_M]];
+        places_m
+            .map(|place_m| global(vehicle, command::NAV_WAYPOINT, frame::GLOBAL_TERRAIN, place_m))
+            .to_vec()
+    };
+    for (ways, turns_m) in [(spline, 30.0), (above_ground, 60.0)] {
+        let mut settings = VehicleSettings::new(Identity::Px4);
+        settings.surroundings.terrain = Terrain::new(Relief { grid: None, hills: vec![RIDGE] });
+        let flight = Flight::new(&settings, ways);
+        flight.keeps_limits();
+        let [off_m, ..] = flight.worst();
+        assert!(off_m < 0.05, "{off_m} m off");
+        let rests = |now: &&PositionReference| now.velocity_m_s.norm() < 0.02;
+        let resting = flight.reference.iter().filter(rests);
+        let nearest_m = resting.map(|now| (now.position_m.x - turns_m).abs()).fold(f64::INFINITY, f64::min);
+        assert!(nearest_m < 0.05, "it turns back {nearest_m} m beside its place");
+    }
+}
+
+/// A place that is named twice is passed as if it were named once, without a look to the north.
+#[test]
+fn a_place_that_follows_itself_does_not_disturb_the_curve() {
+    let fly = |count: usize, kind: u16| {
+        let mut settings = VehicleSettings::new(Identity::Px4);
+        settings.surroundings.terrain = Terrain::new(Relief { grid: None, hills: vec![RIDGE] });
+        Flight::new(&settings, |vehicle| {
+            let places_m = [[0.0, 30.0, HEIGHT_M], [10.0, 60.0, HEIGHT_M], [10.0, 90.0, HEIGHT_M]];
+            let one = |place_m| global(vehicle, kind, frame::GLOBAL_TERRAIN, place_m);
+            [vec![one(places_m[0])], vec![one(places_m[1]); count], vec![one(places_m[2])]].concat()
+        })
+    };
+    for kind in [command::NAV_SPLINE_WAYPOINT, command::NAV_WAYPOINT] {
+        let (once, thrice) = (fly(1, kind), fly(3, kind));
+        thrice.keeps_limits();
+        assert_eq!(once.reference.len(), thrice.reference.len());
+        for (once, thrice) in once.reference.iter().zip(&thrice.reference) {
+            assert!((once.position_m - thrice.position_m).norm() < 1e-9, "{once:?} {thrice:?}");
+            assert!((once.yaw_rad - thrice.yaw_rad).abs() < 1e-9, "{once:?} {thrice:?}");
+        }
+    }
+}
+
+/// The other side of the Earth is refused when the mission is to be flown; until then it is drawn and checked in bounded time.
+#[test]
+fn a_way_along_the_ground_to_the_other_side_of_the_earth_is_drawn_in_bounded_memory() {
+    let mut settings = VehicleSettings::new(Identity::Px4);
+    settings.surroundings.terrain = Terrain::new(Relief { grid: None, hills: vec![RIDGE] });
+    settings.conduct.failsafe.fence_enabled = true;
+    settings.conduct.failsafe.fence_height_m = 200.0;
+    let mut vehicle = Vehicle::new(&settings).expect("valid settings");
+    let far = item(frame::GLOBAL_TERRAIN, command::NAV_WAYPOINT, [0.0, 60.0, HEIGHT_M]);
+    vehicle.set_plan(PlanKind::Mission, vec![far]).expect("it is taken");
+    let legs = vehicle.planned_way();
+    assert!(legs[0].place_m.norm() > 1e6 && legs[0].through_m.len() <= 2000, "{:?}", legs[0].place_m);
+    let refusal = vehicle.start_mission(None).expect_err("it is too far away").to_string();
+    assert!(refusal.contains("km away"), "{refusal}");
+}
+
+/// On the ground a mission without a takeoff climbs to the height of one, in the air it does not, and without a way it flies nothing.
+#[test]
+fn a_climb_that_is_not_flown_is_not_held_against_the_fence() {
+    let mut settings = VehicleSettings::new(Identity::Px4);
+    settings.conduct.failsafe.fence_enabled = true;
+    settings.conduct.failsafe.fence_height_m = 8.0;
+    settings.conduct.takeoff_height_m = 5.0;
+    let mut vehicle = Vehicle::new(&settings).expect("valid settings");
+    vehicle.arm(false).expect("armed");
+    vehicle.set_mode(Mode::Takeoff).expect("it takes off");
+    for _ in 0..10_000 {
+        vehicle.tick().expect("the flight goes on");
+    }
+    assert!(vehicle.outputs().position_m.z < -4.0, "{:?}", vehicle.outputs().position_m);
+    let mut higher = settings.clone();
+    higher.conduct.takeoff_height_m = 10.0;
+    let mut grounded = Vehicle::new(&higher).expect("valid settings");
+    let kept = vehicle.kept_configuration();
+    vehicle.adopt(&kept, &higher.conduct).expect("a parameter");
+    let waypoint = vec![item(frame::LOCAL_NED, command::NAV_WAYPOINT, [20.0, 0.0, -6.0])];
+    let land = vec![item(frame::LOCAL_NED, command::NAV_LAND, [20.0, 0.0, 0.0])];
+    vehicle.set_plan(PlanKind::Mission, waypoint.clone()).expect("a mission in the air");
+    grounded.set_plan(PlanKind::Mission, waypoint).expect_err("it would climb through the fence");
+    grounded.set_plan(PlanKind::Mission, land).expect("it flies nothing");
 }
 
 /// Both places are 10 m above home, the top of the hill between them is 20 m above it: the way leads up to 30 m.

@@ -86,6 +86,11 @@ impl Circle {
         self.place_m(self.angle_rad())
     }
 
+    /// Where it is after so much more of the way around, rad; NED, m.
+    pub fn ahead_m(&self, around_rad: f64) -> Vector3<f64> {
+        self.place_m(self.angle_rad() + self.direction * around_rad)
+    }
+
     /// A place of it at an angle, rad from north seen from the centre; NED, m.
     pub fn place_m(&self, angle_rad: f64) -> Vector3<f64> {
         let (sin, cos) = libm::sincos(angle_rad);

@@ -18,6 +18,8 @@ use crate::surroundings::Terrain;
 
 /// Largest distance between the places, on the map, m.
 const SPACING_M: f64 = 4.0;
+/// So many places of a way are drawn and checked at most: 4 m apart up to 8 km.
+const SKETCHED: f64 = 2000.0;
 /// So many places are looked ahead: far enough to brake within.
 pub const PLACES_AHEAD: usize = 24;
 
@@ -53,12 +55,30 @@ impl GroundWay {
     /// The places behind one of them, NED, m, up to its end.
     pub fn places_m(&self, here_m: &Vector3<f64>, terrain: &Terrain) -> impl Iterator<Item = Vector3<f64>> {
         let way = (self.to_m - self.from_m).xy();
-        let parts = ceil(way.norm() / SPACING_M).max(1.0);
+        let parts = self.parts();
         let flown = way.dot(&(here_m - self.from_m).xy()) / way.norm_squared();
         // A way that leads straight up or down has one part.
         let flown = if flown.is_finite() { round(flown * parts).clamp(0.0, parts - 1.0) } else { 0.0 };
+        self.ends_of_parts_m(flown as usize, parts, terrain)
+    }
+
+    /// Places on all of it, NED, m, up to its end; on a long way they lie farther apart.
+    pub fn sketch_m(&self, terrain: &Terrain) -> impl Iterator<Item = Vector3<f64>> {
+        self.ends_of_parts_m(0, self.parts().min(SKETCHED), terrain)
+    }
+
+    fn parts(&self) -> f64 {
+        ceil((self.to_m - self.from_m).xy().norm() / SPACING_M).max(1.0)
+    }
+
+    fn ends_of_parts_m(
+        &self,
+        flown: usize,
+        parts: f64,
+        terrain: &Terrain,
+    ) -> impl Iterator<Item = Vector3<f64>> {
         let heights_m = [self.from_m, self.to_m].map(|place_m| terrain.z_below_m(&place_m) - place_m.z);
-        (flown as usize + 1..=parts as usize).map(move |part| {
+        (flown + 1..=parts as usize).map(move |part| {
             let share = part as f64 / parts;
             if share == 1.0 {
                 return self.to_m;
@@ -118,6 +138,19 @@ mod tests {
         }
         assert!(way.places_m(&places_m[9], &terrain).eq(places_m[10..].iter().copied()));
         assert_eq!(way.places_m(&way.end_m(), &terrain).collect::<Vec<_>>(), [way.end_m()]);
+    }
+
+    /// A plan may name a place on the other side of the Earth.
+    #[test]
+    fn the_sketch_of_a_way_has_no_more_places_than_can_be_drawn() {
+        let terrain = Terrain::default();
+        let sketch_m = |length_m| {
+            let way = GroundWay::new(Vector3::zeros(), Vector3::new(length_m, 0.0, -9.0));
+            way.sketch_m(&terrain).collect::<Vec<_>>()
+        };
+        assert_eq!(sketch_m(100.0).len(), 25);
+        let far_m = sketch_m(2e7);
+        assert_eq!((far_m.len(), far_m.last().copied()), (2000, Some(Vector3::new(2e7, 0.0, -9.0))));
     }
 
     #[test]

@@ -2,9 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::ground_way::{GroundWay, leads_along_ground};
+use super::mission::{Beginning, PlannedLeg, planned_way};
 use super::situation::Situation;
-use super::spline::{Bend, curve_places_m};
 use crate::fence::{Breach, Fence, Zones};
 use crate::plan::step::Navigate;
 use crate::plan::{
@@ -85,71 +84,37 @@ impl KnownPlans {
 /// [`PlanFault`] that names the item.
 pub fn check_way(situation: &Situation, program: &Program) -> Result<(), PlanFault> {
     let Some(fence) = situation.fence().filter(Fence::bounds) else { return Ok(()) };
-    let mut before_m = situation.home.position_m;
-    for (index, way_m) in planned_ways_m(situation, program) {
-        let Some(place_m) = way_m.last().copied() else { continue };
-        let breach = fence.breach(&place_m).or_else(|| breach_on(&fence, &before_m, &way_m));
+    let beginning = Beginning {
+        home_m: situation.home.position_m,
+        takeoff_height_m: situation.conduct.takeoff_height_m,
+        terrain: situation.terrain,
+        grounded: !situation.flies(),
+    };
+    let mut before_m = beginning.home_m;
+    for PlannedLeg { item, through_m, place_m } in planned_way(program, &beginning) {
+        let way_m = through_m.iter().chain([&place_m]);
+        let breach = fence.breach(&place_m).or_else(|| breach_on(&fence, &before_m, way_m));
         before_m = place_m;
-        refuse(index, breach)?;
+        refuse(item, breach)?;
     }
     Ok(())
 }
 
-/// What of a fence forbids a way on from a place. Where that is forbidden itself, it has to be left anyway.
-fn breach_on(fence: &Fence, from_m: &Vector3<f64>, way_m: &[Vector3<f64>]) -> Option<Breach> {
+/// What of a fence forbids a way on from a place, straight from each place on it to the next. Where that is forbidden itself, it has to be
+/// left anyway.
+fn breach_on<'a>(
+    fence: &Fence,
+    from_m: &'a Vector3<f64>,
+    mut way_m: impl Iterator<Item = &'a Vector3<f64>>,
+) -> Option<Breach> {
     let begins_within = fence.breach(from_m).is_none();
     let mut before_m = from_m;
-    way_m.iter().find_map(|place_m| {
+    way_m.find_map(|place_m| {
         let at = if begins_within { fence.breach(place_m) } else { None };
         let breach = at.or_else(|| fence.breach_between(before_m, place_m));
         before_m = place_m;
         breach
     })
-}
-
-/// The number of each step that leads to a place, and the places on the way there, the last one at its end, NED, m: what lies between
-/// them is straight, or nearly so.
-fn planned_ways_m(situation: &Situation, program: &Program) -> Vec<(usize, Vec<Vector3<f64>>)> {
-    let mut ways_m = Vec::new();
-    let mut before_m = situation.home.position_m;
-    let mut index = program.first();
-    while index < program.len() {
-        let curve_m = spline_places_m(situation, program, index);
-        let mut next = index + curve_m.len();
-        for (piece, way_m) in curve_places_m(before_m, &curve_m, Bend::Wide).enumerate() {
-            ways_m.push((index + piece, way_m));
-        }
-        if curve_m.is_empty() {
-            next = index + 1;
-            let step = program.navigate(index);
-            let place = step.as_ref().and_then(Navigate::place);
-            if let Some((step, place_m)) = step.zip(place.and_then(|place| place_m(situation, place))) {
-                let way_m = if leads_along_ground(&step, situation.terrain) {
-                    GroundWay::new(before_m, place_m).places_m(&before_m, situation.terrain).collect()
-                } else {
-                    vec![place_m]
-                };
-                ways_m.push((index, way_m));
-            }
-        }
-        before_m = ways_m.last().and_then(|(_, way_m)| way_m.last()).copied().unwrap_or(before_m);
-        index = next;
-    }
-    ways_m
-}
-
-/// The places of the spline waypoints that follow one another from a step on, NED, m, up to the first at which the vehicle rests.
-fn spline_places_m(situation: &Situation, program: &Program, first: usize) -> Vec<Vector3<f64>> {
-    let mut places_m = Vec::new();
-    for index in first..program.len() {
-        let Some(Navigate::Spline { place, hold_s }) = program.navigate(index) else { break };
-        let Some(place_m) = place_m(situation, &place) else { break };
-        places_m.push(place_m);
-        if hold_s > 0.0 || !program.continues_after(index) {
-            break;
-        }
-    }
-    places_m
 }
 
 /// Refuses a mission that cannot be flown to its end: places that are too far away, or below the ground.

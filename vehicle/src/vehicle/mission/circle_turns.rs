@@ -33,6 +33,14 @@ impl CircleTurns {
         self.circle.position_m()
     }
 
+    /// Places of the turns, NED, m: of the first one, and the end of the last one.
+    pub fn sketch_m(&self) -> impl Iterator<Item = Vector3<f64>> {
+        const PARTS: u32 = 24;
+        let first_rad = self.turns_rad.min(TAU);
+        let parts = (1..=PARTS).map(move |part| first_rad * f64::from(part) / f64::from(PARTS));
+        parts.chain([self.turns_rad]).map(|flown_rad| self.circle.ahead_m(flown_rad))
+    }
+
     /// Heading towards the centre, rad.
     pub fn heading_rad(&self) -> f64 {
         self.circle.heading_rad()

@@ -1,23 +1,23 @@
 //! How a step is flown: its task from the beginning to the end.
 
+mod curves;
+
 use nalgebra::Vector3;
 
 use super::super::descent::descend;
 use super::super::fence_watch::stopping_place_m;
-use super::super::ground_way::{GroundWay, headed};
-use super::super::heading_policy::Purpose;
 use super::super::motion::at_rest;
 use super::super::notice::Severity;
 use super::super::proposal::Proposal;
 use super::super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::super::situation::Situation;
-use super::super::spline::{Bend, Onward, Spline};
+use super::super::spline::Onward;
 use super::super::steering::{Steering, SteeringKind};
 use super::super::takeoff::is_slow_near;
 use super::super::tick::TICK_S;
-use super::leg::{Guide, Leg, LegProgress, Turn, is_at_rest, is_settling};
+use super::leg::{Guide, Leg, LegProgress, Turn, is_settling};
 use super::route::Route;
-use super::takeoff_height::takeoff_z_m;
+use super::takeoff_height::{climb_z_m, takeoff_z_m};
 use super::task::{Lowering, Task, TaskProgress, Then, delay_end_us};
 use crate::equipment::Operation;
 use crate::plan::Place;
@@ -50,7 +50,16 @@ impl Course {
         match &self.task {
             Some(Task::Leg(leg, _)) => Some([leg.from_m, leg.to_m]),
             Some(Task::GroundWay(way, ..)) => Some(way.ends_m()),
+            Some(Task::Spline(spline, _)) => Some(spline.ends_m()),
             _ => None,
+        }
+    }
+
+    /// The line that is followed, two places on it, NED, m: of a curve that which touches it where the vehicle is led.
+    pub fn line_m(&self) -> Option<[Vector3<f64>; 2]> {
+        match &self.task {
+            Some(Task::Spline(spline, _)) => Some(spline.touching_m()),
+            _ => self.way_m(),
         }
     }
 
@@ -141,22 +150,14 @@ impl Course {
                 proposal.hold(situation);
                 Task::Wait(Some(delay_end_us(delay, situation)))
             }
-            // On the ground a step above it begins with a climb: to its height, and at least to that of a takeoff.
+            // On the ground a step above it begins with a climb.
             _ if grounded => {
-                let least_z_m = proposal.home().position_m.z - situation.conduct.takeoff_height_m;
                 let end_m = route.leg_end_m(step, &situation.outputs.position_m);
-                let z_m = end_m.map_or(least_z_m, |end_m| end_m.z);
-                self.begin_climb(z_m.min(least_z_m), false, situation, proposal)
+                let z_m = climb_z_m(end_m, proposal.home().position_m.z, situation.conduct.takeoff_height_m);
+                self.begin_climb(z_m, false, situation, proposal)
             }
-            Navigate::Spline { hold_s, .. } => {
-                return self.begin_curve(situation, |course, onward| {
-                    course.begin_spline(*hold_s, onward, route, situation)
-                });
-            }
-            step if route.follows_ground(step) => {
-                return self.begin_curve(situation, |course, onward| {
-                    course.begin_ground_way(step, onward, route, situation)
-                });
+            step if matches!(step, Navigate::Spline { .. }) || route.follows_ground(step) => {
+                return self.begin_curve(step, route, situation, proposal);
             }
             // A leg begins at rest, after a turn or in full motion.
             _ if self.turn.is_none() && is_settling(&situation.outputs.setpoint) => {
@@ -174,115 +175,12 @@ impl Course {
         TaskProgress::Going
     }
 
-    /// A piece of a curve goes on within the same tick from the piece before it, or begins at rest.
-    fn begin_curve(
-        &mut self,
-        situation: &Situation,
-        begin: impl FnOnce(&mut Self, Option<Onward>) -> Option<Task>,
-    ) -> TaskProgress {
-        let onward = self.onward.take().filter(|onward| onward.time_us == situation.time_us);
-        if onward.is_none() && !is_at_rest(&situation.outputs.setpoint) {
-            return TaskProgress::Going;
-        }
-        self.task = begin(self, onward);
-        if self.task.is_some() && onward.is_some() { TaskProgress::Again } else { TaskProgress::Going }
-    }
-
-    fn begin_spline(
-        &self,
-        hold_s: f64,
-        onward: Option<Onward>,
-        route: &Route,
-        situation: &Situation,
-    ) -> Option<Task> {
-        let from_m = onward.map_or(situation.outputs.setpoint.position_m, |onward| onward.position_m);
-        let spline = Spline::new(from_m, onward, &route.curve_m(&from_m), Bend::Wide, situation.limits())?;
-        Some(Task::Spline(spline, hold_s))
-    }
-
-    /// The next piece of a way that follows the ground.
-    fn begin_ground_way(
-        &mut self,
-        step: &Navigate,
-        onward: Option<Onward>,
-        route: &Route,
-        situation: &Situation,
-    ) -> Option<Task> {
-        let here_m = onward.map_or(situation.outputs.setpoint.position_m, |onward| onward.position_m);
-        let way = GroundWay::new(self.anchor_m, route.leg_end_m(step, &self.anchor_m)?);
-        let places_m = route.ground_places_m(&self.anchor_m, &here_m);
-        let spline = Spline::new(here_m, onward, &places_m, Bend::Close, situation.limits())?;
-        let (then, asked_rad) = self.then(step, &way.end_m(), route);
-        self.turn = None;
-        self.head_for(asked_rad, way.bearing_rad());
-        Some(Task::GroundWay(way, spline, then))
-    }
-
-    fn fly_ground_way(
-        &mut self,
-        way: GroundWay,
-        mut spline: Spline,
-        then: Then,
-        situation: &Situation,
-        proposal: &mut Proposal,
-    ) -> TaskProgress {
-        if let Some(set_point) = spline.step(TICK_S) {
-            let set_point = if self.heading_is_asked {
-                PositionSetPoint { yaw: YawTarget::Angle(self.heading_rad), ..set_point }
-            } else {
-                headed(set_point, Purpose::Mission, self.heading_rad, situation)
-            };
-            proposal.follow(situation, &set_point);
-            self.task = Some(Task::GroundWay(way, spline, then));
-            return TaskProgress::Going;
-        }
-        self.onward = spline.onward(situation.time_us);
-        if spline.end_m() != way.end_m() {
-            self.task = None;
-            return TaskProgress::Again;
-        }
-        self.anchor_m = way.end_m();
-        if self.onward.is_some() {
-            return TaskProgress::Done(None);
-        }
-        let yaw = if self.heading_is_asked { YawTarget::Angle(self.heading_rad) } else { YawTarget::Hold };
-        let axes = self.anchor_m.data.0[0].map(AxisTarget::Position);
-        proposal.follow(situation, &PositionSetPoint { axes, yaw });
-        self.arrive(then, situation, proposal)
-    }
-
     /// The heading on a way: what is asked for, else its direction, if it has one.
     fn head_for(&mut self, asked_rad: Option<f64>, bearing_rad: Option<f64>) {
         self.heading_is_asked = asked_rad.is_some();
         if let Some(heading_rad) = asked_rad.or(bearing_rad) {
             self.heading_rad = heading_rad;
         }
-    }
-
-    fn fly_spline(
-        &mut self,
-        mut spline: Spline,
-        hold_s: f64,
-        situation: &Situation,
-        proposal: &mut Proposal,
-    ) -> TaskProgress {
-        if let Some(set_point) = spline.step(TICK_S) {
-            proposal.follow(situation, &set_point);
-            self.task = Some(Task::Spline(spline, hold_s));
-            return TaskProgress::Going;
-        }
-        self.anchor_m = spline.end_m();
-        self.heading_rad = spline.end_heading_rad().unwrap_or(self.heading_rad);
-        self.onward = spline.onward(situation.time_us);
-        if self.onward.is_some() {
-            return TaskProgress::Done(None);
-        }
-        proposal.steer(Steering::Goal(at_rest(self.anchor_m, self.heading_rad)));
-        if hold_s == 0.0 {
-            return TaskProgress::Done(None);
-        }
-        self.task = Some(Task::Wait(Some(situation.after_us(hold_s))));
-        TaskProgress::Going
     }
 
     /// Down with what the gripper holds: on the ground it is released, and without a ground it is taken back.

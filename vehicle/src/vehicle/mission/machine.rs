@@ -116,6 +116,11 @@ impl Mission {
         self.course.way_m()
     }
 
+    /// The line that is followed, two places on it, NED, m.
+    pub fn line_m(&self) -> Option<[Vector3<f64>; 2]> {
+        self.course.line_m()
+    }
+
     /// Whether the way home is flown as a part of it.
     pub fn returns(&self) -> bool {
         self.course.returns()

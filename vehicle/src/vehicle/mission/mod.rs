@@ -20,6 +20,7 @@ mod circle_turns;
 mod course;
 mod jumps;
 mod leg;
+mod leg_end;
 mod machine;
 mod path;
 mod planned_way;

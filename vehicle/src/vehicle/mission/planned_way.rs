@@ -1,11 +1,12 @@
-//! The way that a mission is planned to take, to be drawn: its steps in the order of the plan, each of which begins where the one before it
-//! ends. Jumps are not made, and corners are not cut.
+//! The way that a mission is planned to take, to be drawn and to be checked against the fence: its steps in the order of the plan,
+//! each of which begins where the one before it ends. Jumps are not made, and corners are not cut.
 
 use nalgebra::Vector3;
 
 use super::super::ground_way::{GroundWay, leads_along_ground};
-use super::super::spline::{Bend, curve_places_m};
-use super::takeoff_height::takeoff_z_m;
+use super::super::spline::{Bend, CurvePlaces, curve_places_m};
+use super::leg_end::{circle, leg_end_m, place_m};
+use super::takeoff_height::{climb_z_m, takeoff_z_m};
 use crate::plan::step::Navigate;
 use crate::plan::{Place, Program};
 use crate::surroundings::Terrain;
@@ -30,11 +31,14 @@ pub struct Beginning<'a> {
     pub takeoff_height_m: f64,
     /// The ground.
     pub terrain: &'a Terrain,
+    /// Whether it stands on the ground, to climb before its first step; else it flies already.
+    pub grounded: bool,
 }
 
 /// All legs, from home on.
 pub fn planned_way(program: &Program, beginning: &Beginning) -> Vec<PlannedLeg> {
-    let mut planner = Planner { beginning: *beginning, at_m: beginning.home_m, legs: Vec::new() };
+    let Beginning { home_m, grounded, .. } = *beginning;
+    let mut planner = Planner { beginning: *beginning, at_m: home_m, grounded, legs: Vec::new() };
     let numbered = |item| Some((item, program.navigate(item)?));
     let mut steps = (program.first()..program.len()).filter_map(numbered).peekable();
     while let Some((mut item, step)) = steps.next() {
@@ -61,13 +65,14 @@ struct Planner<'a> {
     beginning: Beginning<'a>,
     /// Where the leg before ends.
     at_m: Vector3<f64>,
+    /// Whether that is on the ground.
+    grounded: bool,
     legs: Vec<PlannedLeg>,
 }
 
 impl Planner<'_> {
     fn end_m(&self, place: &Place, from_m: &Vector3<f64>) -> Vector3<f64> {
-        let [x, y] = place.horizontal_m.unwrap_or([from_m.x, from_m.y]);
-        Vector3::new(x, y, place.down_m(self.beginning.home_m.z).unwrap_or(from_m.z))
+        place_m(place, from_m, self.beginning.home_m.z)
     }
 
     fn arrive(&mut self, item: usize, through_m: Vec<Vector3<f64>>, place_m: Vector3<f64>) {
@@ -75,38 +80,48 @@ impl Planner<'_> {
         self.legs.push(PlannedLeg { item, through_m, place_m });
     }
 
-    /// The climb that a mission begins with which does not take off: to the height of its first place, and at least to that of a takeoff.
-    fn climb_m(&self, first_z_m: f64) -> Option<Vector3<f64>> {
+    /// The climb that a step on the ground begins with which does not take off.
+    fn climb(&mut self, step: &Navigate) -> Option<Vector3<f64>> {
         let Beginning { home_m, takeoff_height_m, .. } = self.beginning;
-        let z_m = first_z_m.min(home_m.z - takeoff_height_m);
-        self.legs.is_empty().then(|| Vector3::new(home_m.x, home_m.y, z_m))
+        let end_m = leg_end_m(step, &self.at_m, home_m.z);
+        if std::mem::take(&mut self.grounded) {
+            self.at_m.z = climb_z_m(end_m, home_m.z, takeoff_height_m);
+            return Some(self.at_m);
+        }
+        None
     }
 
     fn fly(&mut self, item: usize, step: &Navigate) {
-        let Some(place) = step.place() else { return };
-        let end_m = self.end_m(place, &self.at_m);
-        if let Navigate::Takeoff { place, travels } = step {
-            return self.take_off(item, place, *travels);
+        match step {
+            Navigate::Takeoff { place, travels } => return self.take_off(item, place, *travels),
+            Navigate::Land { .. } if self.grounded => return,
+            Navigate::ReturnToLaunch | Navigate::Delay(_) => return,
+            _ => {}
         }
-        let climb_m = self.climb_m(end_m.z);
-        let from_m = climb_m.unwrap_or(self.at_m);
-        let terrain = self.beginning.terrain;
-        let at_height_m = |z_m: f64| Vector3::new(end_m.x, end_m.y, z_m);
-        let (between_m, end_m) = match step {
-            Navigate::Land { .. } => (vec![at_height_m(from_m.z)], at_height_m(terrain.z_below_m(&end_m))),
-            Navigate::LoiterToAltitude { .. } => (vec![at_height_m(from_m.z)], end_m),
-            _ if leads_along_ground(step, terrain) => {
-                let mut places_m: Vec<_> = GroundWay::new(from_m, end_m).places_m(&from_m, terrain).collect();
-                places_m.pop();
-                (places_m, end_m)
+        let mut through_m: Vec<_> = self.climb(step).into_iter().collect();
+        let Beginning { home_m, terrain, .. } = self.beginning;
+        let end_m = leg_end_m(step, &self.at_m, home_m.z).unwrap_or(self.at_m);
+        if leads_along_ground(step, terrain) {
+            through_m.extend(GroundWay::new(self.at_m, end_m).sketch_m(terrain));
+        } else {
+            through_m.push(end_m);
+        }
+        match step {
+            Navigate::Land { .. } => {
+                self.grounded = true;
+                through_m.push(Vector3::new(end_m.x, end_m.y, terrain.z_below_m(&end_m)));
             }
-            _ => (Vec::new(), end_m),
-        };
-        self.arrive(item, climb_m.into_iter().chain(between_m).collect(), end_m);
+            Navigate::LoiterToAltitude { place } => through_m.push(self.end_m(place, &end_m)),
+            Navigate::LoiterTurns(turns) => through_m.extend(circle(turns, &self.at_m, home_m.z).sketch_m()),
+            _ => {}
+        }
+        let end_m = through_m.pop().unwrap_or(end_m);
+        self.arrive(item, through_m, end_m);
     }
 
     /// Up where it is, and then to the place; who is above already does not come down.
     fn take_off(&mut self, item: usize, place: &Place, travels: bool) {
+        self.grounded = false;
         let Beginning { home_m, takeoff_height_m, .. } = self.beginning;
         let z_m = takeoff_z_m(place, home_m.z, takeoff_height_m);
         let above_m = Vector3::new(self.at_m.x, self.at_m.y, z_m.min(self.at_m.z));
@@ -117,18 +132,32 @@ impl Planner<'_> {
     }
 
     fn fly_curve(&mut self, curve: &[(usize, Place)]) {
-        let mut at_m = self.at_m;
-        let mut ends_m = Vec::with_capacity(curve.len());
-        for (_, place) in curve {
-            at_m = self.end_m(place, &at_m);
-            ends_m.push(at_m);
+        let first = curve.first().map(|(_, place)| Navigate::Spline { place: *place, hold_s: 0.0 });
+        let climb_m = first.and_then(|step| self.climb(&step));
+        let begin = self.legs.len();
+        let mut places = CurvePlaces::new(self.at_m);
+        let mut items = Vec::with_capacity(curve.len());
+        for (item, place) in curve {
+            let end_m = self.end_m(place, &places.end_m());
+            if places.turns_back(&end_m) {
+                self.fly_piece(&places, &std::mem::take(&mut items));
+                places = CurvePlaces::new(places.end_m());
+            }
+            items.push((*item, places.push(end_m)));
         }
-        let climb_m = ends_m.first().and_then(|first_m| self.climb_m(first_m.z));
-        let pieces_m = curve_places_m(climb_m.unwrap_or(self.at_m), &ends_m, Bend::Wide);
-        for (((item, _), end_m), mut through_m) in curve.iter().zip(&ends_m).zip(pieces_m) {
-            through_m.pop();
-            through_m.splice(0..0, climb_m.filter(|_| self.legs.is_empty()));
-            self.arrive(*item, through_m, *end_m);
+        self.fly_piece(&places, &items);
+        if let Some(first) = self.legs.get_mut(begin) {
+            first.through_m.splice(0..0, climb_m);
+        }
+    }
+
+    /// Along one curve; of its items some are where the one before is.
+    fn fly_piece(&mut self, places: &CurvePlaces, items: &[(usize, bool)]) {
+        let mut pieces_m = curve_places_m(places.from_m, &places.places_m, Bend::Wide);
+        for (item, goes_on) in items {
+            let mut through_m = goes_on.then(|| pieces_m.next()).flatten().unwrap_or_default();
+            let end_m = through_m.pop().unwrap_or(self.at_m);
+            self.arrive(*item, through_m, end_m);
         }
     }
 }

@@ -6,13 +6,15 @@ use quadrotor::Limits;
 use super::super::ground_way::{GroundWay, PLACES_AHEAD, leads_along_ground};
 use super::super::proposal::Proposal;
 use super::super::situation::Situation;
+use super::super::spline::CurvePlaces;
 use super::super::trajectory::Blend;
 use super::circle_turns::CircleTurns;
 use super::jumps::Jumps;
 use super::leg::{Leg, Turn, is_at_rest};
+use super::leg_end::{circle, leg_end_m, place_m};
 use super::path::{Corner, Start, Stop, first_corner};
 use crate::fence::Fence;
-use crate::plan::step::{Navigate, Turns, Waypoint};
+use crate::plan::step::{Navigate, Turns};
 use crate::plan::{Place, Program};
 use crate::surroundings::Terrain;
 
@@ -58,51 +60,34 @@ impl<'a> Route<'a> {
 
     /// Where the leg of a step ends that begins at `from_m`, NED, m; `None` if it has none.
     pub fn leg_end_m(&self, step: &Navigate, from_m: &Vector3<f64>) -> Option<Vector3<f64>> {
-        match step {
-            Navigate::Waypoint(Waypoint { place, .. })
-            | Navigate::Loiter { place, .. }
-            | Navigate::LoiterTime { place, .. } => Some(self.place_m(place, from_m)),
-            Navigate::LoiterTurns(turns) => Some(self.circle(turns, from_m).position_m()),
-            Navigate::Spline { place, .. } | Navigate::PlacePayload { place, .. } => {
-                Some(self.place_m(place, from_m))
-            }
-            // At the present height; the other one comes then.
-            Navigate::LoiterToAltitude { place } => {
-                let end_m = self.place_m(place, from_m);
-                Some(Vector3::new(end_m.x, end_m.y, from_m.z))
-            }
-            // Down it goes only there.
-            Navigate::Land { place, .. } => place.horizontal_m.map(|[x, y]| Vector3::new(x, y, from_m.z)),
-            Navigate::Takeoff { .. } | Navigate::ReturnToLaunch | Navigate::Delay(_) => None,
-        }
+        leg_end_m(step, from_m, self.home_z_m)
     }
 
     /// The turns of a vehicle that comes from a place, NED, m.
     pub fn circle(&self, turns: &Turns, from_m: &Vector3<f64>) -> CircleTurns {
-        CircleTurns::new(self.place_m(&turns.place, from_m), from_m, turns)
+        circle(turns, from_m, self.home_z_m)
     }
 
-    /// A place, NED, m; what it leaves open is that of another one.
-    fn place_m(&self, place: &Place, open_m: &Vector3<f64>) -> Vector3<f64> {
-        let [x, y] = place.horizontal_m.unwrap_or([open_m.x, open_m.y]);
-        Vector3::new(x, y, place.down_m(self.home_z_m).unwrap_or(open_m.z))
-    }
-
-    /// The places of the present step and of those behind it that are flown along one curve, up to the first at which the vehicle rests.
+    /// The places of the present step and of those behind it that are flown along one curve, NED, m, up to the first at which the vehicle
+    /// rests.
     pub fn curve_m(&self, from_m: &Vector3<f64>) -> Vec<Vector3<f64>> {
         let mut jumps = self.jumps.clone();
-        let (mut next, mut from_m) = (Some(self.current), *from_m);
-        let mut places_m = Vec::new();
-        while let Some(index) = next.filter(|_| places_m.len() < AHEAD) {
-            let Some(Navigate::Spline { place, hold_s }) = self.program.navigate(index) else { break };
-            from_m = self.place_m(&place, &from_m);
-            places_m.push(from_m);
+        let mut next = Some(self.current);
+        let mut places = CurvePlaces::new(*from_m);
+        for _ in 0..AHEAD {
+            let step = next.and_then(|index| Some((index, self.program.navigate(index)?)));
+            let Some((index, Navigate::Spline { place, hold_s })) = step else { break };
+            let place_m = place_m(&place, &places.end_m(), self.home_z_m);
+            if places.turns_back(&place_m) {
+                break;
+            }
+            places.push(place_m);
             if hold_s > 0.0 || !self.program.continues_after(index) {
                 break;
             }
             next = jumps.next(self.program, index + 1).navigation;
         }
-        places_m
+        places.places_m
     }
 
     /// Whether the way to a step's place follows the ground.
@@ -115,22 +100,30 @@ impl<'a> Route<'a> {
     pub fn ground_places_m(&self, from_m: &Vector3<f64>, here_m: &Vector3<f64>) -> Vec<Vector3<f64>> {
         let mut jumps = self.jumps.clone();
         let (mut next, mut from_m, mut here_m) = (Some(self.current), *from_m, *here_m);
-        let mut places_m = Vec::new();
-        while let Some(index) = next.filter(|_| places_m.len() < PLACES_AHEAD) {
+        let mut places = CurvePlaces::new(here_m);
+        for _ in 0..PLACES_AHEAD {
+            let left = PLACES_AHEAD - places.places_m.len();
+            let Some(index) = next.filter(|_| left > 0) else { break };
             let step = self.program.navigate(index).filter(|step| self.follows_ground(step));
             let Some((step, end_m)) = step.and_then(|step| Some((step, self.leg_end_m(&step, &from_m)?)))
             else {
                 break;
             };
             let way = GroundWay::new(from_m, end_m);
-            places_m.extend(way.places_m(&here_m, self.terrain).take(PLACES_AHEAD - places_m.len()));
+            let mut ahead_m = way.places_m(&here_m, self.terrain).take(left).peekable();
+            if ahead_m.peek().is_some_and(|place_m| places.turns_back(place_m)) {
+                break;
+            }
+            ahead_m.for_each(|place_m| {
+                places.push(place_m);
+            });
             if self.rests_at(index, &step) {
                 break;
             }
             next = jumps.next(self.program, index + 1).navigation;
             (from_m, here_m) = (end_m, end_m);
         }
-        places_m
+        places.places_m
     }
 
     /// z of a place, m; that of another one where it leaves it open.

@@ -307,6 +307,7 @@ impl Vehicle {
             home_m: self.home().position_m,
             takeoff_height_m: self.conduct().takeoff_height_m,
             terrain: self.terrain(),
+            grounded: true,
         };
         let items = self.plans().get(PlanKind::Mission).items();
         planned_way(&compile::mission(items, &self.site()), &beginning)
@@ -319,8 +320,9 @@ impl Vehicle {
 
     /// The end of the present leg, NED, m, and the vehicle's distance from the leg's line, positive to the right, m.
     pub fn leg_errors(&self) -> Option<(Vector3<f64>, f64)> {
-        let way_m = self.machines.mission.way_m()?;
-        Some((way_m[1], cross_track_m(way_m, &self.outputs().position_m)))
+        let mission = &self.machines.mission;
+        let [_, end_m] = mission.way_m()?;
+        Some((end_m, cross_track_m(mission.line_m()?, &self.outputs().position_m)))
     }
 }
 

@@ -84,6 +84,15 @@ impl CurvePiece {
         (to_u - from_u) / 6.0 * (self.rate_m(from_u) + 4.0 * self.rate_m(middle) + self.rate_m(to_u))
     }
 
+    /// Parts of it that are about 4 m long, as far as their number is within a range.
+    pub fn parts(&self, (least, most): (usize, usize)) -> usize {
+        const PART_M: f64 = 4.0;
+        const SHARES: u32 = 8;
+        let at = |share: u32| f64::from(share) / f64::from(SHARES);
+        let length_m: f64 = (0..SHARES).map(|share| self.length_m(at(share), at(share + 1))).sum();
+        (libm::ceil(length_m / PART_M) as usize).clamp(least, most)
+    }
+
     /// What it does at u:
     ///
     /// ```text
