@@ -23,10 +23,14 @@ PROGRAM = b"\x7fELF a program"
 
 @pytest.fixture
 def packed(tmp_path) -> bytes:
-    program, notice = tmp_path / "built", tmp_path / "LICENSE-MIT"
-    program.write_bytes(PROGRAM)
-    notice.write_text("a licence")
-    return image.image(image.layer(program, [notice]), "1.2.3", "arm64")
+    (tmp_path / "built").write_bytes(PROGRAM)
+    (tmp_path / "LICENSE-MIT").write_text("a licence")
+    (tmp_path / "COPYRIGHT").write_text("the licence of musl")
+    return packed_from(tmp_path)
+
+
+def packed_from(folder: Path) -> bytes:
+    return image.image(image.layer(folder / "built", folder / "COPYRIGHT", [folder / "LICENSE-MIT"]), "1.2.3", "arm64")
 
 
 def members(archive: bytes) -> dict[str, tarfile.TarInfo]:
@@ -58,7 +62,9 @@ def test_the_image_is_an_oci_layout(packed):
     assert configuration["rootfs"]["diff_ids"] == [f"sha256:{hashlib.sha256(files).hexdigest()}"]
     assert configuration["config"]["Entrypoint"] == ["/lmpc-sitl"] and configuration["architecture"] == "arm64"
     entries = members(files)
-    assert set(entries) == {"lmpc-sitl", "licenses", "licenses/LICENSE-MIT", "data"}
+    assert set(entries) == {"lmpc-sitl", "licenses", "licenses/LICENSE-MIT", "licenses/MUSL.txt", "data"}
+    # Its licence wants to be in all copies of musl.
+    assert content(files, "licenses/MUSL.txt") == b"the licence of musl"
     assert entries["lmpc-sitl"].mode == 0o755 and content(files, "lmpc-sitl") == PROGRAM
     # The user of the image may write into its folder.
     user = configuration["config"]["User"]
@@ -73,18 +79,19 @@ def test_the_image_is_one_that_old_engines_load(packed):
 
 def test_the_same_files_give_the_same_bytes(packed, tmp_path):
     os.utime(tmp_path / "built", (1, 1))
-    assert image.image(image.layer(tmp_path / "built", [tmp_path / "LICENSE-MIT"]), "1.2.3", "arm64") == packed
+    assert packed_from(tmp_path) == packed
     files = {"folder/lmpc-sitl": PROGRAM, "folder/man/lmpc-sitl.1": b"page"}
     assert assets.tar_gz(files) == assets.tar_gz(dict(reversed(files.items())))
     assert assets.zipped(files) == assets.zipped(dict(reversed(files.items())))
 
 
 def test_an_image_of_more_than_ten_megabytes_is_refused(tmp_path):
-    program = tmp_path / "built"
+    program, notice = tmp_path / "built", tmp_path / "COPYRIGHT"
+    notice.write_text("the licence of musl")
     script = ROOT / "xtask" / "python" / "image.py"
     for size, code in ((9_900_000, 0), (10_000_000, 1)):
         program.write_bytes(bytes(size))
-        command = [sys.executable, script, program, "amd64", "1.2.3", tmp_path / f"{size}.tar"]
+        command = [sys.executable, script, program, "amd64", "1.2.3", tmp_path / f"{size}.tar", notice]
         done = subprocess.run(command, capture_output=True, text=True, timeout=60, env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"})
         assert done.returncode == code and (tmp_path / f"{size}.tar").exists() == (code == 0), done.stderr
     assert "10.00 MB" in done.stderr and "make the program smaller" in done.stderr

@@ -16,6 +16,8 @@ PORT = 5760
 #: The same sources give the same bytes: times are those of the FMUs, the beginning of 1980.
 TIME, TIME_TEXT = 315532800, "1980-01-01T00:00:00Z"
 OCI = "application/vnd.oci.image"
+#: Name of the C library's licence in the image: copies of musl must carry it.
+C_LIBRARY = "MUSL.txt"
 #: Most bytes of the files in the image.
 MOST = 10_000_000
 
@@ -42,13 +44,13 @@ class Tar:
         return self.bytes.getvalue()
 
 
-def layer(program: Path, notices: list[Path]) -> bytes:
-    """The files of the image: the program, its licences, and a folder for what it writes."""
+def layer(program: Path, c_library: Path, notices: list[Path]) -> bytes:
+    """The files of the image: the program, its licences and that of its C library, and a folder for what it writes."""
     tar = Tar()
     tar.add("lmpc-sitl", program.read_bytes(), 0o755)
     tar.add("licenses", None, 0o755)
-    for notice in sorted(notices):
-        tar.add(f"licenses/{notice.name}", notice.read_bytes(), 0o644)
+    for name, notice in sorted({C_LIBRARY: c_library, **{notice.name: notice for notice in notices}}.items()):
+        tar.add(f"licenses/{name}", notice.read_bytes(), 0o644)
     tar.add("data", None, 0o777, USER)
     return tar.done()
 
@@ -111,9 +113,10 @@ def main() -> int:
     parser.add_argument("architecture", choices=["amd64", "arm64"])
     parser.add_argument("version")
     parser.add_argument("out", type=Path, help="file to write")
-    parser.add_argument("notices", type=Path, nargs="*", help="licences")
+    parser.add_argument("c_library", type=Path, help="licence of the C library in the program: musl's COPYRIGHT")
+    parser.add_argument("notices", type=Path, nargs="*", help="other licences")
     arguments = parser.parse_args()
-    files = layer(arguments.program, arguments.notices)
+    files = layer(arguments.program, arguments.c_library, arguments.notices)
     if len(files) > MOST:
         print(f"error: the files of the image take {len(files) / 1e6:.2f} MB, more than the allowed {MOST / 1e6:.0f} MB: "
               f"make the program smaller ({arguments.program.stat().st_size / 1e6:.2f} MB)", file=sys.stderr)

@@ -5,6 +5,7 @@ use crate::product::{Product, Profile};
 use crate::progress::Progress;
 use crate::python;
 use crate::release::Release;
+use crate::toolchains;
 use xtask::failure::Failure;
 use xtask::files;
 use xtask::platform::Platform;
@@ -21,13 +22,15 @@ pub fn make(
     // Its scripts need Python alone.
     let interpreter = python::interpreter()?;
     let release = Release::prepare_static(workspace, progress, platforms, install)?;
+    // Linux is linked with zig, whose package has the licence.
+    let c_library = toolchains::c_library_notice(&toolchains::zig_environment(workspace, progress)?)?;
     let notices = notices(workspace, progress)?;
     for (platform, program) in release.build(workspace, progress, Product::Vehicle, Profile::Release)? {
         let (architecture, version) = (platform.container_architecture(), env!("CARGO_PKG_VERSION"));
         let image = workspace.assets().join(format!("lmpc-sitl-{version}-image-{architecture}.tar"));
         let mut write = interpreter.command();
         write.arg(workspace.python_sources().join("image.py"));
-        write.arg(&program).args([architecture, version]).arg(&image).args(&notices);
+        write.arg(&program).args([architecture, version]).arg(&image).arg(&c_library).args(&notices);
         progress.timed("Writing the image", || process::output(&mut write, "writing the image"))?;
         let bytes = files::read(&image)?.len();
         println!("{} ({:.1} MB)", workspace.shown(&image), bytes as f64 / 1e6);

@@ -1,5 +1,6 @@
 //! What links for a platform.
 
+use std::path::PathBuf;
 use std::process::Command;
 
 use crate::progress::Progress;
@@ -7,6 +8,7 @@ use crate::python::{self, Packages, Python};
 use xtask::cargo::cargo;
 use xtask::failure::Failure;
 use xtask::platform::Platform;
+use xtask::process;
 use xtask::workspace::Workspace;
 
 use super::machine::MINGW;
@@ -68,6 +70,15 @@ impl Linker {
 /// The environment with zig, created if it is not there.
 pub fn zig_environment(workspace: &Workspace, progress: &Progress) -> Result<Python, Failure> {
     python::environment(workspace, progress, &python::interpreter()?, Packages::Zig)
+}
+
+/// The licence of musl, the C library in static programs: in the package of zig.
+pub fn c_library_notice(zig: &Python) -> Result<PathBuf, Failure> {
+    let mut ask = zig.command();
+    ask.args(["-c", "import ziglang; print(ziglang.__path__[0])"]);
+    let folder = process::output(&mut ask, "asking for the folder of zig")?;
+    let folder = PathBuf::from(String::from_utf8_lossy(&folder).trim());
+    Ok(folder.join("lib").join("libc").join("musl").join("COPYRIGHT"))
 }
 
 fn zig_build(workspace: &Workspace, zig: &Python) -> Command {

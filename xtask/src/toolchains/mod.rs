@@ -18,7 +18,7 @@ mod toolchain;
 
 pub use compiler::Compiler;
 pub use emulator::Emulator;
-pub use linker::zig_environment;
+pub use linker::{c_library_notice, zig_environment};
 pub use need::{Need, provide};
 pub use system_emulator::SystemEmulator;
 pub use toolchain::Toolchain;
