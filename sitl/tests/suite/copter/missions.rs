@@ -8,6 +8,7 @@ use vehicle::plan::{PlanKind, command};
 
 const TAKEOFF: u16 = command::NAV_TAKEOFF;
 const WAYPOINT: u16 = command::NAV_WAYPOINT;
+const AUTO_RTL: u32 = 27;
 const RETURN: u16 = command::NAV_RETURN_TO_LAUNCH;
 
 /// Suite: AuxFunctionsInMission.
@@ -84,7 +85,6 @@ fn go_on(flier: &mut Flier, command: MavCmd) -> u8 {
 /// way of its own. Here all is a tenth as far.
 #[test]
 fn a_mission_has_a_way_back_and_a_landing() {
-    const AUTO_RTL: u32 = 27;
     let (back, landing) = (MavCmd::MAV_CMD_DO_RETURN_PATH_START, MavCmd::MAV_CMD_DO_LAND_START);
     let rows = [
         (WAYPOINT, 125.0, 0.0, 50.0),
@@ -123,9 +123,20 @@ fn fly_north(flier: &mut Flier, north_m: f32) {
 fn without_a_mission_there_is_no_way_back() {
     let mut flier = Flier::new();
     flier.take_off(10.0, GUIDED);
-    for command in [MavCmd::MAV_CMD_DO_RETURN_PATH_START, MavCmd::MAV_CMD_DO_LAND_START] {
+    let wanted = [
+        (
+            MavCmd::MAV_CMD_DO_RETURN_PATH_START,
+            "Return path rejected: the mission has no DO_RETURN_PATH_START",
+        ),
+        (MavCmd::MAV_CMD_DO_LAND_START, "Landing rejected: the mission has no DO_LAND_START"),
+    ];
+    for (command, reason) in wanted {
         assert_eq!(go_on(&mut flier, command), FAILED);
+        assert!(flier.has_said(reason), "{:?}", flier.bench.texts());
     }
+    assert_eq!(flier.ask_mode(AUTO_RTL), FAILED);
+    let reason = "Auto RTL rejected: the mission has neither DO_RETURN_PATH_START nor DO_LAND_START";
+    assert!(flier.has_said(reason), "{:?}", flier.bench.texts());
 }
 
 /// Suite: MISSION_OPTION_CLEAR_MISSION_AT_BOOT.

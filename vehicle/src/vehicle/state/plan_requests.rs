@@ -135,7 +135,7 @@ impl Vehicle {
     pub fn start_landing(&mut self) -> Result<(), Refusal> {
         let (site, here_m) = (self.site(), self.outputs().position_m);
         let start = landing_start(self.plans().get(PlanKind::Mission).items(), &site, &here_m);
-        self.join(start, "DO_LAND_START")?;
+        self.join(start, "Landing rejected: the mission has no DO_LAND_START")?;
         self.machines.failsafe.release();
         Ok(())
     }
@@ -147,7 +147,7 @@ impl Vehicle {
     pub fn start_return_path(&mut self) -> Result<(), Refusal> {
         let (site, here_m) = (self.site(), self.outputs().position_m);
         let joined = return_path::joined(self.plans().get(PlanKind::Mission).items(), &site, &here_m);
-        self.join(joined, "DO_RETURN_PATH_START")?;
+        self.join(joined, "Return path rejected: the mission has no DO_RETURN_PATH_START")?;
         self.machines.failsafe.release();
         Ok(())
     }
@@ -167,12 +167,15 @@ impl Vehicle {
         let (site, here_m) = (self.site(), self.outputs().position_m);
         let items = self.plans().get(PlanKind::Mission).items();
         let joined = return_path::joined(items, &site, &here_m);
-        self.join(joined.or_else(|| landing_start(items, &site, &here_m)), "DO_LAND_START")
+        self.join(
+            joined.or_else(|| landing_start(items, &site, &here_m)),
+            "Auto RTL rejected: the mission has neither DO_RETURN_PATH_START nor DO_LAND_START",
+        )
     }
 
-    fn join(&mut self, index: Option<usize>, wanted: &str) -> Result<(), Refusal> {
-        let index =
-            index.ok_or_else(|| Refusal::Failed(format!("Landing rejected: the mission has no {wanted}")))?;
+    /// Goes on with an item; `refusal` says why there is none.
+    fn join(&mut self, index: Option<usize>, refusal: &str) -> Result<(), Refusal> {
+        let index = index.ok_or_else(|| Refusal::Failed(refusal.to_owned()))?;
         self.fly_mission(Some(index))?;
         if self.identity().is_ardupilot() {
             self.machines.mission.land();
