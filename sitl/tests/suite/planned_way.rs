@@ -88,6 +88,53 @@ fn a_way_over_a_hill_is_flown_as_planned() {
     assert_same(&flown_m, &line_m(Vector3::zeros(), &legs), 0.4);
 }
 
+/// A first step that changes the height only at its place is flown at the height of a takeoff, and turns are flown around theirs.
+#[test]
+fn a_height_that_comes_later_and_turns_are_flown_as_planned() {
+    let mut bench = bench(Identity::Px4, false);
+    let turns = item(&bench, command::NAV_LOITER_TURNS, frame::GLOBAL_RELATIVE, [-60.0, 20.0, 30.0], 1.25);
+    let items = [
+        item(&bench, command::NAV_LOITER_TO_ALT, frame::GLOBAL_RELATIVE, [-30.0, 20.0, 30.0], 0.0),
+        MissionItem { parameters: [1.25, 0.0, 8.0, 0.0], ..turns },
+        item(&bench, command::NAV_LAND, frame::GLOBAL_RELATIVE, [-60.0, 40.0, 0.0], 0.0),
+    ];
+    assert_eq!(result(&upload(&mut bench, PlanKind::Mission, &items)), Some(0));
+    let legs = bench.autopilot.vehicle().planned_way();
+    bench.arm();
+    assert_eq!(bench.set_mode(Mode::Mission), 0);
+    bench.fly_until("it climbs", 5.0, |bench| {
+        bench.autopilot.vehicle().is_armed() && bench.position()[2] < -0.1
+    });
+    let flown_m = flown_m(&mut bench, |bench| !bench.autopilot.vehicle().is_armed());
+    assert_same(&flown_m, &line_m(Vector3::zeros(), &legs), 0.4);
+}
+
+/// A place that is named twice, and a way back over the same ground: each item has its leg.
+#[test]
+fn a_curve_that_rests_and_turns_back_is_flown_as_planned() {
+    let mut bench = bench(Identity::Px4, true);
+    let begin = item(&bench, command::NAV_WAYPOINT, frame::GLOBAL_RELATIVE, [0.0, 0.0, 25.0], 1.0);
+    let places_m = [
+        [-30.0, 0.0, 25.0],
+        [-30.0, 0.0, 25.0],
+        [-50.0, 20.0, 25.0],
+        [-28.0, 2.0, 25.0],
+        [-20.0, 30.0, 25.0],
+    ];
+    let curve = places_m
+        .map(|place_m| item(&bench, command::NAV_SPLINE_WAYPOINT, frame::GLOBAL_RELATIVE, place_m, 0.0));
+    let items = [[begin].as_slice(), &curve].concat();
+    assert_eq!(result(&upload(&mut bench, PlanKind::Mission, &items)), Some(0));
+    let legs = bench.autopilot.vehicle().planned_way();
+    assert_eq!(legs.iter().map(|leg| leg.item).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5]);
+    let (begin_m, line_m) = (legs[0].place_m, line_m(legs[0].place_m, &legs[1..]));
+    assert_eq!(bench.set_mode(Mode::Mission), 0);
+    bench.fly_until("it is where the curve begins", 30.0, |bench| bench.is_near(begin_m.into()));
+    let over = |bench: &Bench| bench.autopilot.vehicle().mission_status().state == MissionState::Complete;
+    let flown_m = flown_m(&mut bench, over);
+    assert_same(&flown_m, &line_m, 0.3);
+}
+
 /// A curve through four places, which leaves the straight lines between them by metres.
 #[test]
 fn a_curve_is_flown_as_planned() {

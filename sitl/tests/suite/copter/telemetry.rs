@@ -3,6 +3,7 @@
 use super::flier::*;
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::*;
+use vehicle::plan::{PlanKind, command};
 
 /// Messages of a second that a choice takes.
 fn per_second(flier: &mut Flier, choose: impl Fn(&MavMessage) -> bool) -> usize {
@@ -166,6 +167,36 @@ fn a_traffic_management_is_told_where_it_flies_to() {
     let way = flying.next_lat - ground.lat;
     assert!(flying.flags.contains(next) && way.abs_diff(8993) < 90, "{way}");
     assert!((flying.relative_alt - 20_000).abs() < 1500 && flying.vx > 50, "{flying:?}");
+}
+
+/// On a curve, too, it is told where that leads; off the line is off the curve, not off the straight way.
+#[test]
+fn on_a_spline_its_end_is_told() {
+    let mut flier = with_mission(&[
+        (command::NAV_TAKEOFF, 0.0, 0.0, 20.0),
+        (command::NAV_SPLINE_WAYPOINT, 60.0, 0.0, 20.0),
+        (command::NAV_SPLINE_WAYPOINT, 60.0, 60.0, 20.0),
+    ]);
+    flier.take_off(20.0, GUIDED);
+    flier.change_mode(AUTO);
+    flier.wait("the second place", 60.0, |flier| flier.vehicle().mission_status().current == 3);
+    flier.fly(3.0);
+    let parameters = [UTM_GLOBAL_POSITION_DATA::ID as f32, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    flier.bench.heard.clear();
+    assert_eq!(flier.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, parameters), ACCEPTED);
+    let told = flier.latest(|message| match message {
+        MavMessage::UTM_GLOBAL_POSITION(position) => Some(position.clone()),
+        _ => None,
+    });
+    let told = told.expect("it was asked for");
+    let items = flier.vehicle().plans().get(PlanKind::Mission).items();
+    let place = items[3].position;
+    assert!((f64::from(told.next_lat) - place[0] * 1e7).abs() < 2.0, "{told:?} {place:?}");
+    assert!((f64::from(told.next_lon) - place[1] * 1e7).abs() < 2.0, "{told:?} {place:?}");
+    let here_m = flier.vehicle().outputs().position_m;
+    assert!(here_m.x > 61.0, "the curve leaves the straight way: {here_m}");
+    let (_, cross_track_m) = flier.vehicle().leg_errors().expect("a leg");
+    assert!(cross_track_m.abs() < 0.1, "{cross_track_m}");
 }
 
 /// PREFLIGHT_CALIBRATION, parameter 4: the ground station sees the pulses, and sticks arm nothing until it is over.
