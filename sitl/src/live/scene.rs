@@ -141,9 +141,11 @@ fn circle([north_m, east_m]: [f64; 2], radius_m: f64) -> Vec<[f64; 2]> {
 }
 
 fn obstacle(obstacle: &Obstacle, terrain: &Terrain) -> ObstacleScene {
+    let (ObstacleShape::Cylinder { centre_m, .. } | ObstacleShape::Box { centre_m, .. }) = obstacle.shape;
     let corners_m = match obstacle.shape {
-        ObstacleShape::Cylinder { centre_m, radius_m } => circle(centre_m, radius_m),
-        ObstacleShape::Box { centre_m: [north_m, east_m], size_m: [length_m, width_m], heading_rad } => {
+        ObstacleShape::Cylinder { radius_m, .. } => circle(centre_m, radius_m),
+        ObstacleShape::Box { size_m: [length_m, width_m], heading_rad, .. } => {
+            let [north_m, east_m] = centre_m;
             let (sine, cosine) = libm::sincos(heading_rad);
             [(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)]
                 .map(|(along, across)| (along * length_m / 2.0, across * width_m / 2.0))
@@ -151,10 +153,26 @@ fn obstacle(obstacle: &Obstacle, terrain: &Terrain) -> ObstacleScene {
                 .to_vec()
         }
     };
-    // What stands on a slope is rooted far below it.
-    let lowest_m = corners_m.iter().map(|corner_m| -terrain.z_m(*corner_m)).fold(f64::INFINITY, f64::min);
-    let heights_m = [obstacle.bottom_m.max(lowest_m), obstacle.top_m];
+    // What stands on a slope is rooted far below it, and over a hollow farther below than at its corners.
+    let ground_m = outline_m(centre_m, &corners_m).map(|place_m| -terrain.z_m(place_m));
+    let bottom_m = obstacle.bottom_m.max(ground_m.fold(f64::INFINITY, f64::min));
+    let heights_m = [bottom_m.min(obstacle.top_m), obstacle.top_m];
     ObstacleScene { name: obstacle.name.clone(), corners_m, heights_m }
+}
+
+/// Places below an area: its middle, and on its sides.
+fn outline_m(centre_m: [f64; 2], corners_m: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> {
+    /// So many parts of each side.
+    const PARTS: usize = 16;
+    let next_m = corners_m.iter().cycle().skip(1);
+    let on_side_m = |(from_m, to_m): (&[f64; 2], &[f64; 2])| {
+        let (from_m, to_m) = (*from_m, *to_m);
+        (0..PARTS).map(move |part| {
+            let share = part as f64 / PARTS as f64;
+            [0, 1].map(|axis| from_m[axis] + share * (to_m[axis] - from_m[axis]))
+        })
+    };
+    std::iter::once(centre_m).chain(corners_m.iter().zip(next_m).flat_map(on_side_m))
 }
 
 #[cfg(test)]
@@ -164,7 +182,9 @@ mod tests {
     use clap::Parser;
     use mavlink::dialects::ardupilotmega::{MavMessage, MavParamType, PARAM_SET_DATA};
 
-    use super::SceneWatch;
+    use vehicle::surroundings::{Hill, Obstacle, Relief, Shape, Terrain};
+
+    use super::{SceneWatch, obstacle};
     use crate::configuration::{Arguments, Settings};
     use crate::fleet::{Fleet, Member};
 
@@ -189,5 +209,19 @@ mod tests {
         fleet.ask(0, wider, Instant::now());
         assert_eq!(look(&fleet).and_then(radius_m), Some(60.0));
         assert!(look(&fleet).is_none());
+    }
+
+    /// From crest to crest of two hills 20 m high, 100 m apart: in the middle the ground is at 0 m.
+    #[test]
+    fn a_wall_across_a_hollow_reaches_down_to_its_bottom_and_none_stands_on_its_head() {
+        let hill = |north_m| Hill { centre_m: [north_m, 0.0], radius_m: 45.0, top_m: 5.0, height_m: 20.0 };
+        let terrain = Terrain::new(Relief { grid: None, hills: vec![hill(-50.0), hill(50.0)] });
+        let wall = |top_m| {
+            let shape = Shape::Box { centre_m: [0.0, 0.0], size_m: [100.0, 1.0], heading_rad: 0.0 };
+            let wall = Obstacle { name: "wall".to_owned(), shape, bottom_m: f64::NEG_INFINITY, top_m };
+            obstacle(&wall, &terrain).heights_m
+        };
+        assert_eq!(wall(30.0), [0.0, 30.0]);
+        assert_eq!(wall(-3.0), [-3.0, -3.0], "wholly below the ground");
     }
 }
