@@ -212,7 +212,8 @@ fn auto_rtl_flies_the_landing_of_the_mission() {
     assert!((north - 15.0).abs() < 0.5, "{north}");
     let mut bench = Bench::hovering_with(&ardupilot());
     assert_eq!(bench.set_mode(Mode::MissionLanding), FAILED);
-    assert!(said(&bench, "no DO_LAND_START"), "{:?}", bench.texts());
+    let reason = "the mission has neither DO_RETURN_PATH_START nor DO_LAND_START";
+    assert!(said(&bench, reason), "{:?}", bench.texts());
 }
 
 /// Each step is told when it begins, and waypoints when they are reached.
