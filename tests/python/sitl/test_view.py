@@ -290,7 +290,8 @@ def test_a_click_on_a_slope_flies_over_that_place(start, connect, look, tmp_path
             view.controls.target.set(east, 4, -north);
             view.lookFrom(view.camera.position.clone().set(8, 7, 20));
         }""", [north, east])
-        shown.wait("true")
+        seen = shown.value("page.frame.time")
+        shown.wait(f"page.frame.time > {seen}")
         shown.page.mouse.click(*shown.project((north, east, -hill(north, east))))
         asked = [float(shown.page.locator(f"#fly-to [name={name}]").input_value()) for name in ("north", "east")]
         assert asked == pytest.approx((north, east), abs=0.15)
