@@ -65,7 +65,7 @@ pub const INPUTS: [Group; 10] = [
     group("thrust", &[], NEWTON, &[("thrust", ALONE), ("command.thrust", ALONE)], "thrust of all rotors, along the body's z axis away from the ground"),
     group("torque", XYZ, NEWTON_METRE, &[("torque", DOTTED), ("torque", [".phi", ".theta", ".psi", ""]), ("command.torque", [".phi", ".theta", ".psi", ""])], "torques of all rotors about the body's axes"),
     group("wind.velocity", XYZ, METRE_PER_SECOND, &[("wind.velocity", DOTTED)], "velocity of the air, along the world's axes"),
-    group("ground.z", &[], METRE, &[("ground.z", ALONE)], "height of the ground below the vehicle, along the world's z axis"),
+    group("ground.z", &[], METRE, &[("ground.z", ALONE)], "z of the ground below the vehicle, along the world's z axis"),
 ];
 
 /// Indices into [`INPUTS`].
