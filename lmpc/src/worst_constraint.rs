@@ -111,6 +111,8 @@ impl<T: Precision> Worst<'_, T> {
     }
 
     /// Looks at one direction sample by sample, at what leaves as little room as `most` or less.
+    // Only for limits that are broken, so one copy for all who call.
+    #[inline(never)]
     fn look_along_side<const C: usize>(
         &mut self,
         limit: &PlacedLimit<T>,

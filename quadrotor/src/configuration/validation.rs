@@ -252,6 +252,7 @@ fn validate_start(configuration: &Configuration) -> Result<(), ConfigurationErro
 }
 
 /// A body starts above ground at a height, `ground_z_m`, NED. One that is not finite is refused by the first step.
+#[inline(never)]
 pub(crate) fn validate_start_over(
     configuration: &Configuration,
     body: &RigidBody,

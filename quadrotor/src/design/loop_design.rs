@@ -41,6 +41,8 @@ impl LoopDesign {
     ///
     /// # Errors
     /// Those of [`StabilityReport::new`].
+    // One copy in the library, which is to stay small.
+    #[inline(never)]
     pub(crate) fn adapted(
         &self,
         configuration: &Configuration,
