@@ -66,6 +66,17 @@ fn assert_same(flown_m: &[Place], planned_m: &[Place], within_m: f64) {
     }
 }
 
+/// A mission that begins and ends on the ground is flown along its planned legs.
+fn flies_from_the_ground(bench: &mut Bench, legs: &[PlannedLeg]) {
+    bench.arm();
+    assert_eq!(bench.set_mode(Mode::Mission), 0);
+    bench.fly_until("it climbs", 5.0, |bench| {
+        bench.autopilot.vehicle().is_armed() && bench.position()[2] < -0.1
+    });
+    let flown_m = flown_m(bench, |bench| !bench.autopilot.vehicle().is_armed());
+    assert_same(&flown_m, &line_m(Vector3::zeros(), legs), 0.4);
+}
+
 /// Up to the height of a takeoff that no item asks for, over the hill 8 m above the ground, to another height at a place, and down on its slope.
 #[test]
 fn a_way_over_a_hill_is_flown_as_planned() {
@@ -79,13 +90,7 @@ fn a_way_over_a_hill_is_flown_as_planned() {
     let legs = bench.autopilot.vehicle().planned_way();
     assert_eq!(legs.iter().map(|leg| leg.item).collect::<Vec<_>>(), [0, 1, 2]);
     assert!(legs[0].through_m.len() > 20, "the first way follows the ground: {:?}", legs[0].through_m);
-    bench.arm();
-    assert_eq!(bench.set_mode(Mode::Mission), 0);
-    bench.fly_until("it climbs", 5.0, |bench| {
-        bench.autopilot.vehicle().is_armed() && bench.position()[2] < -0.1
-    });
-    let flown_m = flown_m(&mut bench, |bench| !bench.autopilot.vehicle().is_armed());
-    assert_same(&flown_m, &line_m(Vector3::zeros(), &legs), 0.4);
+    flies_from_the_ground(&mut bench, &legs);
 }
 
 /// A first step that changes the height only at its place is flown at the height of a takeoff, and turns are flown around theirs.
@@ -100,13 +105,7 @@ fn a_height_that_comes_later_and_turns_are_flown_as_planned() {
     ];
     assert_eq!(result(&upload(&mut bench, PlanKind::Mission, &items)), Some(0));
     let legs = bench.autopilot.vehicle().planned_way();
-    bench.arm();
-    assert_eq!(bench.set_mode(Mode::Mission), 0);
-    bench.fly_until("it climbs", 5.0, |bench| {
-        bench.autopilot.vehicle().is_armed() && bench.position()[2] < -0.1
-    });
-    let flown_m = flown_m(&mut bench, |bench| !bench.autopilot.vehicle().is_armed());
-    assert_same(&flown_m, &line_m(Vector3::zeros(), &legs), 0.4);
+    flies_from_the_ground(&mut bench, &legs);
 }
 
 /// A place that is named twice, and a way back over the same ground: each item has its leg.

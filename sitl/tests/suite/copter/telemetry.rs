@@ -139,29 +139,31 @@ fn it_introduces_itself_when_it_is_asked() {
     assert!(version.is_some_and(|version| version >> 24 == 4), "{version:?}");
 }
 
+/// What a client that asks for it is told.
+fn utm_position(flier: &mut Flier) -> UTM_GLOBAL_POSITION_DATA {
+    let parameters = [UTM_GLOBAL_POSITION_DATA::ID as f32, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    flier.bench.heard.clear();
+    assert_eq!(flier.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, parameters), ACCEPTED);
+    let told = flier.latest(|message| match message {
+        MavMessage::UTM_GLOBAL_POSITION(position) => Some(position.clone()),
+        _ => None,
+    });
+    told.expect("it was asked for")
+}
+
 /// Suite: UTMGlobalPosition, UTMGlobalPositionWaypoint.
 #[test]
 fn a_traffic_management_is_told_where_it_flies_to() {
     let mut flier = Flier::new();
-    let asked = |flier: &mut Flier| {
-        let parameters = [UTM_GLOBAL_POSITION_DATA::ID as f32, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        flier.bench.heard.clear();
-        assert_eq!(flier.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, parameters), ACCEPTED);
-        let told = flier.latest(|message| match message {
-            MavMessage::UTM_GLOBAL_POSITION(position) => Some(position.clone()),
-            _ => None,
-        });
-        told.expect("it was asked for")
-    };
     let next = UtmDataAvailFlags::UTM_DATA_AVAIL_FLAGS_NEXT_WAYPOINT_AVAILABLE;
-    let ground = asked(&mut flier);
+    let ground = utm_position(&mut flier);
     assert_eq!(ground.flight_state, UtmFlightState::UTM_FLIGHT_STATE_GROUND);
     assert!(!ground.flags.contains(next) && ground.uas_id.iter().any(|byte| *byte != 0), "{ground:?}");
     flier.take_off(20.0, GUIDED);
     let place = crate::common::requests::local_target(0b1101_1111_1000, [100.0, 0.0, -20.0], [0.0; 3]);
     flier.bench.send(place);
     flier.fly(1.0);
-    let flying = asked(&mut flier);
+    let flying = utm_position(&mut flier);
     assert_eq!(flying.flight_state, UtmFlightState::UTM_FLIGHT_STATE_AIRBORNE);
     // 100 m are 8993 units of latitude on a sphere, and within 1 % of that on the ellipsoid.
     let way = flying.next_lat - ground.lat;
@@ -181,14 +183,7 @@ fn on_a_spline_its_end_is_told() {
     flier.change_mode(AUTO);
     flier.wait("the second place", 60.0, |flier| flier.vehicle().mission_status().current == 3);
     flier.fly(3.0);
-    let parameters = [UTM_GLOBAL_POSITION_DATA::ID as f32, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    flier.bench.heard.clear();
-    assert_eq!(flier.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, parameters), ACCEPTED);
-    let told = flier.latest(|message| match message {
-        MavMessage::UTM_GLOBAL_POSITION(position) => Some(position.clone()),
-        _ => None,
-    });
-    let told = told.expect("it was asked for");
+    let told = utm_position(&mut flier);
     let items = flier.vehicle().plans().get(PlanKind::Mission).items();
     let place = items[3].position;
     assert!((f64::from(told.next_lat) - place[0] * 1e7).abs() < 2.0, "{told:?} {place:?}");
