@@ -161,6 +161,8 @@ class Pilot:
         self.offboard.set_velocity_ned(VelocityNedYaw(0.0, 0.0, 1.0, 0.0))
 
     def inject(self, unit, kind, instance, refusal=None):
+        # MAVSDK reads this parameter when the plugin is made, and asks the vehicle if it is not known yet. Reads are answered in turn.
+        self.param.get_param_int("SYS_FAILURE_EN")
         try:
             self.failure.inject(unit, kind, instance)
             result = None
