@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use paper::bars::{BarResult, Flyer, Plan, Track, flown, plans};
+use paper::bars::{BarResult, Demand, Flyer, Plan, Shape, Track, flown, plans};
 use quadrotor::{Configuration, ControllerKind, Inputs, PositionReference, Simulation};
 
 fn all_plans() -> &'static [Plan] {
@@ -27,7 +27,7 @@ fn the_table_has_every_row() {
         ("cruise", 2),
         ("goal", 11),
         ("path", 4),
-        ("beyond-limits", 9),
+        ("beyond-limits", 13),
         ("side-force", 2),
         ("mass", 12),
         ("mass-goal", 8),
@@ -168,4 +168,23 @@ fn a_track_has_a_line_per_moment() {
         csv.lines().last().unwrap().split(',').map(|number| number.parse().unwrap()).collect();
     assert_eq!(last[0], 20.0);
     assert!((last[1] - 1.0).abs() < 1e-3);
+}
+
+/// What nobody can follow is left no farther, in the mean, than by hovering in the middle of it: A √(1/2 + 1/8) RMS from a figure-eight, and A
+/// from a circle.
+#[test]
+fn a_path_far_beyond_the_limits_is_no_worse_than_hovering() {
+    let mut flights = 0;
+    for plan in all_plans().iter().filter(|plan| plan.row.name() == "beyond-limits") {
+        let Demand::Path(path) = plan.demand else { panic!("{}", plan.name) };
+        let hovering_m = match path.shape {
+            Shape::FigureEight => path.size_m * 0.625_f64.sqrt(),
+            Shape::Circle => path.size_m,
+        };
+        let results = flown(plan, &[Flyer::LaguerreMpc]).results;
+        let away_cm = find(&results, Flyer::LaguerreMpc, "RMS distance").value.unwrap();
+        assert!(away_cm < 100.0 * hovering_m, "{}: {away_cm} cm of {hovering_m} m", plan.name);
+        flights += 1;
+    }
+    assert_eq!(flights, 13);
 }

@@ -29,13 +29,20 @@ const PATHS: [(Shape, f64, f64); 4] = [
     (Shape::Circle, 4.0, 1.5),
 ];
 /// Paths beyond limits of 1 rad and 20 m/s.
-const STEEP_PATHS: [(Shape, f64, f64); 3] =
-    [(Shape::FigureEight, 8.0, 1.0), (Shape::FigureEight, 8.0, 1.6), (Shape::Circle, 8.0, 1.6)];
+const STEEP_PATHS: [(Shape, f64, f64); 5] = [
+    (Shape::FigureEight, 8.0, 1.0),
+    (Shape::FigureEight, 8.0, 1.6),
+    (Shape::FigureEight, 5.0, 2.0),
+    (Shape::FigureEight, 1.0, 3.3),
+    (Shape::Circle, 8.0, 1.6),
+];
 /// Paths beyond the default limits: the first by 1°.
-const FAST_PATHS: [(Shape, f64, f64); 4] = [
+const FAST_PATHS: [(Shape, f64, f64); 6] = [
     (Shape::FigureEight, 6.0, 0.7),
     (Shape::FigureEight, 6.0, 0.85),
     (Shape::FigureEight, 6.0, 1.2),
+    (Shape::FigureEight, 3.0, 1.2),
+    (Shape::FigureEight, 3.0, 2.0),
     (Shape::Circle, 4.0, 1.5),
 ];
 /// Paths that a steady force takes beyond the default limits.

@@ -147,7 +147,8 @@ impl Cascade {
         } else {
             self.turned = TurnedWay::default();
         }
-        let narrowed = self.narrowed.follow(configuration, reference, time_us);
+        let narrowed =
+            self.narrowed.follow(configuration, design.attitude.available_rad_s2, reference, time_us);
         let way = narrowed.as_ref().unwrap_or(reference);
         self.followed.follow(configuration, (way, &seen.body), time_us).or(narrowed)
     }

@@ -6,11 +6,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::finite::are_finite;
 
-/// Share of the acceleration that the model has missed over a sample which is taken for a lasting disturbance. A share of 1
-/// would be an incremental law by measured increments, which passes on the noise of the velocity undiminished, and forgets one
-/// half of a kick that a limit cuts off. At this one a disturbance is found within two samples.
-const NEW: f64 = 0.5;
-
 /// A model of N states and P inputs, channel by channel: the output, its rate, and others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MotionModel<const N: usize, const P: usize> {
@@ -124,7 +119,7 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
             let explained = (deviation[acceleration] + self.deviation[acceleration]) / 2.0;
             let missed = change[rate] / sample_time_s - explained - self.disturbance[channel];
             if missed.is_finite() {
-                self.disturbance[channel] += NEW * missed;
+                self.disturbance[channel] += missed;
             }
         }
         self.deviation = *deviation;
@@ -145,7 +140,7 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
     ///
     /// ```text
     /// ν    = Δẏ − [(A − I) x(k−1) + B v + E d]_ẏ        what the model has missed
-    /// d    ← d + 0.5 ν/ΔT
+    /// d    ← d + ν/ΔT
     /// Δx   = x − A⁻¹ (x + w − B v − E d)
     /// ```
     pub(crate) fn increment(
@@ -161,7 +156,7 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
             let rate = N / P * channel + 1;
             let missed = (change[rate] - expected[rate]) / model.sample_time_s;
             if missed.is_finite() {
-                self.disturbance[channel] += NEW * missed;
+                self.disturbance[channel] += missed;
             }
         }
         self.deviation = *deviation;

@@ -25,6 +25,8 @@ pub(crate) struct AttitudeBandwidth {
     pub(crate) lean_rad_s: f64,
     /// Of yaw, rad/s.
     pub(crate) turn_rad_s: f64,
+    /// Largest angular acceleration of roll and pitch in hover, the smaller of the two, rad/s².
+    pub(crate) available_rad_s2: f64,
     /// How many times longer a turn takes under the largest torque than a lean of the same angle.
     pub(crate) longer: f64,
 }
@@ -44,7 +46,12 @@ impl AttitudeBandwidth {
         let closed = |acceleration: f64| fastest.min(libm::sqrt(acceleration / proportional_rad));
         let lean = roll.min(pitch);
         // t = 2 √(e/α) from rest to rest.
-        Self { lean_rad_s: closed(lean), turn_rad_s: closed(yaw), longer: libm::sqrt(lean / yaw) }
+        Self {
+            lean_rad_s: closed(lean),
+            turn_rad_s: closed(yaw),
+            available_rad_s2: lean,
+            longer: libm::sqrt(lean / yaw),
+        }
     }
 }
 

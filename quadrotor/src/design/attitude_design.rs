@@ -42,6 +42,8 @@ pub(crate) struct AttitudeDesign {
     pub(crate) turn: TurnLaw,
     /// Rate per error with which small leans are closed, 1/s: half of the bandwidth.
     pub(crate) closing_1_s: f64,
+    /// Largest angular acceleration of roll and pitch in hover, rad/s².
+    pub(crate) available_rad_s2: f64,
     /// How far ahead limits are kept, s, by the laws of lean and of turn.
     pub(crate) sight_s: [f64; 2],
     /// The motion of one axis by its model, which stands for the measured one; `None` with the paper's models, which do not know
@@ -64,6 +66,7 @@ impl AttitudeDesign {
         let sample_time_s = settings.sample_time_s();
         let kind = controllers.kind;
         let closing_1_s = bandwidth.lean_rad_s / 2.0;
+        let available_rad_s2 = bandwidth.available_rad_s2;
         let last = ATTITUDE.iter().copied().max().unwrap_or(0) as f64;
         let sight_s = [last * sample_time_s, last * longer * sample_time_s];
         match controllers.model {
@@ -77,6 +80,7 @@ impl AttitudeDesign {
                     lean: lean.law,
                     turn: turn.law,
                     closing_1_s,
+                    available_rad_s2,
                     sight_s,
                     motion: Some(ModelIncrement::new(&axis)?),
                     closed: Some(closed_loop(&axis, &lean.gain, lag_s, sample_time_s)?),
@@ -96,7 +100,8 @@ impl AttitudeDesign {
                     &[bandwidth.turn_rad_s].into(),
                     &lagged_attitude_model(1, 0.0, sample_time_s)?,
                 )?;
-                let design = Self { lean, turn, closing_1_s, sight_s, motion: None, closed: None };
+                let design =
+                    Self { lean, turn, closing_1_s, available_rad_s2, sight_s, motion: None, closed: None };
                 Ok((design, lean_report.worse(&turn_report)))
             }
         }

@@ -7,9 +7,8 @@ use crate::guidance::derivative_estimator::DerivativeEstimator;
 use crate::guidance::streamed_velocity::StreamedVelocity;
 use crate::{GRAVITY_M_S2, Limits, PositionReference};
 
-/// How many times the limits of tilt rate and tilt acceleration are taken for motion. It is followed as it is: see
-/// [`NarrowedWay`](crate::control::narrowed_way::NarrowedWay).
-pub(crate) const FOLLOWED: f64 = 1.5;
+/// How many times the limits of tilt rate and tilt acceleration are taken for motion.
+const MOTION: f64 = 1.5;
 /// Multiple of the limits of jerk beyond which a change of the acceleration counts as a jump, not as motion.
 const JERK_JUMP: f64 = 10.0;
 /// The same of the limits of speed for a change of the position.
@@ -63,10 +62,10 @@ impl FoundDerivatives {
         if gives_all(point) {
             return *point;
         }
-        // What the tilt command may do, and what is followed beyond it.
+        // What the tilt command may do, and what is motion beyond it.
         let most_m_s2 = GRAVITY_M_S2 * libm::tan(limits.tilt_rad);
-        let most_m_s3 = FOLLOWED * GRAVITY_M_S2 * limits.tilt_rate_rad_s;
-        let most_m_s4 = FOLLOWED * GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
+        let most_m_s3 = MOTION * GRAVITY_M_S2 * limits.tilt_rate_rad_s;
+        let most_m_s4 = MOTION * GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
         let mut whole = *point;
         let found = self.accelerations.at(since_us);
         whole.jerk_m_s3 = at_most(&found.first, most_m_s3);
