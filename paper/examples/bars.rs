@@ -12,12 +12,15 @@ use std::path::{Path, PathBuf};
 use clap::Parser;
 use paper::bars::{BarResult, Flyer, Optimum, Plan, flown, judged_random_flights, plans, sample_times};
 use paper::shaped_flights;
-use quadrotor::{Access, Configuration, PARAMETERS};
+use quadrotor::{Access, AirframePreset, Configuration, PARAMETERS};
 use rayon::prelude::*;
 
 /// Flies the table of bars and prints its figures.
 #[derive(Parser)]
 struct Arguments {
+    /// Flies this airframe with its default limits and weights: paper, crazyflie, hummingbird, iris, heavy.
+    #[arg(long, value_name = "NAME", default_value = "paper")]
+    airframe: String,
     /// Changes a parameter of the FMU, as NAME=VALUE; can be repeated.
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<String>,
@@ -49,7 +52,10 @@ struct Arguments {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = Arguments::parse();
-    let mut configuration = Configuration::default();
+    let preset = AirframePreset::ALL.into_iter().find(|preset| preset.name() == arguments.airframe);
+    let airframe =
+        preset.ok_or_else(|| format!("no airframe is called {:?}", arguments.airframe))?.airframe();
+    let mut configuration = Configuration::for_airframe(&airframe)?;
     for setting in &arguments.set {
         set(&mut configuration, setting)?;
     }

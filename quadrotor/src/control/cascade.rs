@@ -366,14 +366,15 @@ fn upright_when_answered(configuration: &Configuration, body: &RigidBody) -> f64
     (upright(body) + rising_1_s * later_s).clamp(UPRIGHT, 1.0)
 }
 
-/// Acceleration down, m/s², with which a climb will be braked at its goal: v²/2h, as far as it is under way. None of a descent, which is
-/// braked by more thrust.
+/// Acceleration down, m/s², with which a climb will be braked at its goal: v²/h, as far as it is under way. The speed of a regulated
+/// approach falls with the distance left, which takes twice as much in the beginning as braking evenly. None of a descent, which is braked
+/// by more thrust.
 fn braking_m_s2(seen: &Observation, reference: &PositionReference) -> f64 {
     /// A climb that is so near its end, m, is braked already.
     const NEAR_M: f64 = 0.2;
     let climb_m_s = (reference.velocity_m_s.z - seen.body.velocity_m_s.z).max(0.0);
     let way_m = seen.body.position_m.z - reference.position_m.z;
-    climb_m_s * climb_m_s / (2.0 * way_m.max(NEAR_M))
+    climb_m_s * climb_m_s / way_m.max(NEAR_M)
 }
 
 /// The largest horizontal acceleration, m/s², with which commands keep the thrust axis within `tilt_rad` when the vertical

@@ -65,3 +65,28 @@ fn slow_samples_keep_the_vertical_speeds() {
         assert!(climb < 1.005 && sink < 1.02, "each {each_s} s: {climb} {sink}");
     }
 }
+
+/// A climb is braked by less thrust, of which the lean that brakes the horizontal motion at the same time has its share: they went up to 10 %
+/// beyond the goal.
+#[test]
+fn climbs_leave_thrust_to_brake_with() {
+    for (preset, rotor_lag_s, most) in [
+        (AirframePreset::Paper, None, 0.01),
+        (AirframePreset::Hummingbird, None, 0.01),
+        (AirframePreset::Iris, None, 0.055),
+        (AirframePreset::Heavy, None, 0.01),
+        (AirframePreset::Heavy, Some(0.02), 0.01),
+    ] {
+        let mut configuration = Configuration::for_airframe(&preset.airframe()).unwrap();
+        configuration.reference.shaping = false;
+        let lag_s = &mut configuration.airframe.rotor_time_constant_s;
+        *lag_s = rotor_lag_s.unwrap_or(*lag_s);
+        let goal_m = [5.0, 5.0, -5.0];
+        let mut beyond = 0.0_f64;
+        let end = fly(&configuration, &goal(goal_m, 0.0), 5.0, |outputs| {
+            beyond = beyond.max(overshoot(outputs, goal_m));
+        });
+        let away_m = distance(&end.outputs(), goal_m);
+        assert!(beyond < most && away_m < 0.02, "{preset:?} {rotor_lag_s:?}: {beyond}, {away_m} m");
+    }
+}
