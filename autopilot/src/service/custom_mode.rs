@@ -43,6 +43,11 @@ impl Service for CustomModes {
     fn command(&mut self, context: &mut Context, _origin: &Origin, command: &Command) -> Outcome {
         let vehicle = &mut context.vehicle;
         match command.number {
+            // It has it in missions only, and scripts that send it without parameters expect to stay in Guided.
+            NAV_GUIDED_ENABLE if vehicle.identity().is_ardupilot() => {
+                let reason = "NAV_GUIDED_ENABLE is not supported as a command: switch to Guided mode";
+                return Err(Refusal::Unsupported(reason.to_owned()));
+            }
             NAV_GUIDED_ENABLE if command.parameter(1) > 0.5 => vehicle.set_mode(Mode::Offboard)?,
             NAV_GUIDED_ENABLE => vehicle.set_mode(Mode::Hold)?,
             _ => set_mode(vehicle, command)?,

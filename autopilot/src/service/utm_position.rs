@@ -5,7 +5,7 @@ use mavlink::dialects::ardupilotmega::{
 };
 use nalgebra::Vector3;
 use vehicle::estimation::gps::{HORIZONTAL_M, VELOCITY_M_S, VERTICAL_M};
-use vehicle::{LandedState, Mode, Vehicle};
+use vehicle::{LandedState, Vehicle};
 
 use crate::codec::{millimetres, scaled_degrees};
 use crate::stream::Component;
@@ -60,13 +60,10 @@ pub fn own(component: &Component<'_>) -> Vec<MavMessage> {
     })]
 }
 
-/// Where it flies to, NED, m: the end of the leg of a mission, or the place that it was asked for.
+/// Where it flies to, NED, m.
 fn next_m(vehicle: &Vehicle) -> Option<Vector3<f64>> {
     if vehicle.landed_state() == LandedState::OnGround {
         return None;
     }
-    if vehicle.mode() == Mode::Mission {
-        return vehicle.leg_errors().map(|(end_m, _)| end_m);
-    }
-    vehicle.asked().and_then(|asked| asked.goal())
+    vehicle.destination_m()
 }

@@ -58,13 +58,20 @@ impl PositionSetPoint {
     /// Brake and stay.
     pub const HOLD: Self = Self { axes: [AxisTarget::HOLD; 3], yaw: YawTarget::Hold };
 
+    /// The place that it asks for, whatever the heading is.
+    pub fn place(&self) -> Option<Vector3<f64>> {
+        match self.axes {
+            [AxisTarget::Position(x), AxisTarget::Position(y), AxisTarget::Position(z)] => {
+                Some(Vector3::new(x, y, z))
+            }
+            _ => None,
+        }
+    }
+
     /// Whether it is only a place to be: then it goes through the shaper.
     pub fn goal(&self) -> Option<Vector3<f64>> {
-        match (self.axes, self.yaw) {
-            (
-                [AxisTarget::Position(x), AxisTarget::Position(y), AxisTarget::Position(z)],
-                YawTarget::Hold | YawTarget::Angle(_),
-            ) => Some(Vector3::new(x, y, z)),
+        match self.yaw {
+            YawTarget::Hold | YawTarget::Angle(_) => self.place(),
             _ => None,
         }
     }

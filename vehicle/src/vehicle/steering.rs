@@ -88,6 +88,14 @@ impl Steering {
         }
     }
 
+    /// Where it leads, NED, m, if it leads to a place.
+    pub(super) fn destination_m(&self) -> Option<Vector3<f64>> {
+        match self {
+            Self::Path(path) => Some(path.end().position_m),
+            _ => self.asked()?.place(),
+        }
+    }
+
     /// Whether its heading follows something that moves.
     pub(super) fn follows_heading(&self) -> bool {
         match self {

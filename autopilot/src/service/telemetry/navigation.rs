@@ -5,7 +5,7 @@ use vehicle::world::heading_deg;
 use vehicle::{Mode, Vehicle};
 
 /// NAV_CONTROLLER_OUTPUT: the tracking errors of the controllers. Across the leg of a mission, else across the heading; in
-/// altitude and speed against the reference. A distance is that to the end of the leg, else to the reference.
+/// altitude and speed against the reference. A distance is that to where the vehicle is led, else to the reference.
 pub fn nav_controller_output(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
     let [roll_rad, pitch_rad] = outputs.tilt_reference_rad;
@@ -13,8 +13,8 @@ pub fn nav_controller_output(vehicle: &Vehicle) -> MavMessage {
     let leg = vehicle.leg_errors().filter(|_| vehicle.mode() == Mode::Mission);
     let (sin, cos) = libm::sincos(outputs.attitude_rad.z);
     let across_m = outputs.tracking_error_m.y * cos - outputs.tracking_error_m.x * sin;
-    let (target_m, cross_track_m) = leg.unwrap_or((reference.position_m, across_m));
-    let way_m = target_m - outputs.position_m;
+    let cross_track_m = leg.map_or(across_m, |(_, cross_track_m)| cross_track_m);
+    let way_m = vehicle.destination_m().unwrap_or(reference.position_m) - outputs.position_m;
     let signed_deg = |angle_rad: f64| {
         let degrees = heading_deg(angle_rad);
         (if degrees > 180.0 { degrees - 360.0 } else { degrees }).round() as i16

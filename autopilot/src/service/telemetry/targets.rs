@@ -139,18 +139,29 @@ fn local_ned(
     })
 }
 
-/// POSITION_TARGET_GLOBAL_INT: the same as a place.
+/// POSITION_TARGET_GLOBAL_INT: where the vehicle is led, and the motion of the reference on the way there, which ArduPilot does not
+/// tell; without such a place the reference.
 pub fn position_target_global_int(vehicle: &Vehicle) -> MavMessage {
+    const ALL_BUT_POSITION: u16 = 0b1111_1111_1000;
     let outputs = vehicle.outputs();
     let reference = &outputs.setpoint;
-    let place = vehicle.frame().to_geodetic(&reference.position_m);
-    let [vx, vy, vz] = floats(&reference.velocity_m_s);
-    let [afx, afy, afz] = floats(&reference.acceleration_m_s2);
-    MavMessage::POSITION_TARGET_GLOBAL_INT(POSITION_TARGET_GLOBAL_INT_DATA {
+    let destination_m = vehicle.destination_m();
+    let place = vehicle.frame().to_geodetic(&destination_m.unwrap_or(reference.position_m));
+    let target = POSITION_TARGET_GLOBAL_INT_DATA {
         time_boot_ms: boot_ms(outputs.time_us),
         lat_int: scaled_degrees(place.latitude_deg),
         lon_int: scaled_degrees(place.longitude_deg),
         alt: place.altitude_m as f32,
+        type_mask: PositionTargetTypemask::from_bits_retain(ALL_BUT_POSITION),
+        coordinate_frame: MavFrame::MAV_FRAME_GLOBAL_INT,
+        ..POSITION_TARGET_GLOBAL_INT_DATA::DEFAULT
+    };
+    if vehicle.identity().is_ardupilot() && destination_m.is_some() {
+        return MavMessage::POSITION_TARGET_GLOBAL_INT(target);
+    }
+    let [vx, vy, vz] = floats(&reference.velocity_m_s);
+    let [afx, afy, afz] = floats(&reference.acceleration_m_s2);
+    MavMessage::POSITION_TARGET_GLOBAL_INT(POSITION_TARGET_GLOBAL_INT_DATA {
         vx,
         vy,
         vz,
@@ -160,6 +171,6 @@ pub fn position_target_global_int(vehicle: &Vehicle) -> MavMessage {
         yaw: wrapped(reference.yaw_rad) as f32,
         yaw_rate: reference.yaw_rate_rad_s as f32,
         type_mask: type_mask(vehicle),
-        coordinate_frame: MavFrame::MAV_FRAME_GLOBAL_INT,
+        ..target
     })
 }

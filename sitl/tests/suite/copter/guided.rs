@@ -4,6 +4,7 @@
 
 use super::flier::*;
 use crate::common::requests::local_target;
+use mavlink::Message as _;
 use mavlink::dialects::ardupilotmega::*;
 
 /// Only the place counts.
@@ -93,4 +94,58 @@ fn a_place_beyond_reach_is_flown_towards() {
     // From 47.4 degrees north and 8.5 degrees east straight over a plane map: atan2(-8.5 cos 23.7 deg, -47.4).
     let course_deg = flown_m.y.atan2(flown_m.x).to_degrees().rem_euclid(360.0);
     assert!((course_deg - 189.3).abs() < 2.0 && (flier.height_m() - 10.0).abs() < 1.0, "{course_deg} deg");
+}
+
+/// The only message of a kind that a request for it brings.
+macro_rules! requested {
+    ($flier:expr, $kind:ident, $data:ident) => {{
+        $flier.bench.heard.clear();
+        let wanted = MavMessage::$kind($data::DEFAULT).message_id() as f32;
+        let asked = [wanted, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert_eq!($flier.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, asked), ACCEPTED);
+        $flier.fly(0.05);
+        let told = $flier.latest(|message| match message {
+            MavMessage::$kind(data) => Some(data.clone()),
+            _ => None,
+        });
+        told.expect(stringify!($kind))
+    }};
+}
+
+/// Programs wait for NAV_CONTROLLER_OUTPUT.wp_dist: it is the distance to the place that was asked for, not that to the reference on the
+/// way there. POSITION_TARGET_GLOBAL_INT is that place, and nothing else of it counts.
+#[test]
+fn the_distance_to_the_place_that_was_asked_for_is_told() {
+    let mut flier = Flier::new();
+    flier.take_off(10.0, GUIDED);
+    flier.wait("10 m", 30.0, |flier| flier.height_m() > 9.8);
+    ask(&mut flier, PLACE, [0.0, 40.0, -12.0], [0.0; 3]);
+    flier.wait("on the way", 30.0, |flier| flier.distance_m() > 5.0);
+    let told = requested!(flier, NAV_CONTROLLER_OUTPUT, NAV_CONTROLLER_OUTPUT_DATA);
+    assert!((f64::from(told.wp_dist) - (40.0 - flier.distance_m())).abs() < 1.5, "{}", told.wp_dist);
+    assert_eq!(told.target_bearing, 90);
+    let target = requested!(flier, POSITION_TARGET_GLOBAL_INT, POSITION_TARGET_GLOBAL_INT_DATA);
+    let there = flier.vehicle().frame().to_geodetic(&nalgebra::Vector3::new(0.0, 40.0, -12.0));
+    assert!((f64::from(target.lat_int) - there.latitude_deg * 1e7).abs() < 2.0);
+    assert!((f64::from(target.lon_int) - there.longitude_deg * 1e7).abs() < 2.0);
+    assert!((f64::from(target.alt) - there.altitude_m).abs() < 0.01);
+    assert_eq!((target.type_mask.bits(), target.vy), (0b1111_1111_1000, 0.0));
+    flier.change_mode(RTL);
+    flier.wait("on the way home", 60.0, |flier| flier.height_m() > 14.8);
+    flier.fly(2.0);
+    let told = requested!(flier, NAV_CONTROLLER_OUTPUT, NAV_CONTROLLER_OUTPUT_DATA);
+    assert!((f64::from(told.wp_dist) - flier.distance_m()).abs() < 1.5, "{}", told.wp_dist);
+    assert!(flier.distance_m() > 3.0, "{} m", flier.distance_m());
+}
+
+/// ArduCopter has NAV_GUIDED_ENABLE only in missions: as a command it is unknown, and leaves the mode as it is.
+#[test]
+fn guided_is_not_enabled_by_a_command() {
+    let mut flier = Flier::new();
+    flier.take_off(5.0, GUIDED);
+    assert_eq!(
+        flier.command(MavCmd::MAV_CMD_NAV_GUIDED_ENABLE, [0.0; 7]),
+        MavResult::MAV_RESULT_UNSUPPORTED as u8
+    );
+    assert_eq!(flier.mode(), GUIDED);
 }

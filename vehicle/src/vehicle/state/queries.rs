@@ -318,6 +318,12 @@ impl Vehicle {
         self.machines.mission.take_reached()
     }
 
+    /// Where it is led to, NED, m: the end of a mission's leg or of a planned way, or the place that it was asked for.
+    pub fn destination_m(&self) -> Option<Vector3<f64>> {
+        let leg = self.leg_errors().filter(|_| self.mode() == Mode::Mission);
+        leg.map(|(end_m, _)| end_m).or_else(|| self.decided.steering().destination_m())
+    }
+
     /// The end of the present leg, NED, m, and the vehicle's distance from the leg's line, positive to the right, m.
     pub fn leg_errors(&self) -> Option<(Vector3<f64>, f64)> {
         let mission = &self.machines.mission;
