@@ -119,3 +119,23 @@ fn what_scripts_set_is_there_with_the_originals_default() {
         expect(Identity::ArduPilot, name, default);
     }
 }
+
+/// Names from PX4's pages on safety, offboard control, external vision, payloads and configuration, and from ArduPilot's on visual odometry
+/// and notch filters. Programs and parameter files set them on their way, and one that is unknown stops them.
+#[test]
+fn what_programs_set_on_their_way_is_there() {
+    const PX4: &str = "COM_FAIL_ACT_T COM_FLT_TIME_MAX COM_FLTT_LOW_ACT COM_QC_ACT COM_POS_FS_EPH COM_VEL_FS_EVH COM_DLL_EXCEPT \
+        COM_ARM_EKF_POS COM_ARM_EKF_HGT COM_ARM_EKF_YAW COM_RC_ARM_HYST COM_OBL_ACT COM_OBS_AVOID COM_TAKEOFF_ACT COM_KILL_DISARM \
+        GF_SOURCE FD_EXT_ATS_EN MIS_DIST_1WP MPC_XY_MAN_EXPO MPC_USE_HTE MPC_MAN_Y_TAU EKF2_AID_MASK EKF2_HGT_MODE EKF2_EV_CTRL \
+        EKF2_EV_POS_X EKF2_EV_DELAY SIM_GPS_USED CA_ROTOR_COUNT CA_ROTOR0_PX PWM_MAIN_FUNC1 BAT1_N_CELLS CP_DIST CP_GUIDE_ANG \
+        PLD_HACC_RAD PLD_BTOUT TRIG_MODE TRIG_INTERFACE TRIG_DISTANCE PD_GRIPPER_EN PD_GRIPPER_TYPE MNT_MODE_IN MNT_MAV_SYSID \
+        CAL_ACC0_ID CAL_GYRO0_ID CAL_MAG0_ID IMU_GYRO_RATEMAX SYS_CTRL_ALLOC SYS_VEHICLE_RESP WV_EN";
+    const ARDUPILOT: &str = "VISO_TYPE VISO_DELAY_MS VISO_ORIENT VISO_POS_X VISO_POS_M_NSE INS_HNTCH_ENABLE INS_HNTCH_FREQ INS_HNTCH_BW \
+        INS_HNTCH_REF BRD_TYPE FFT_ENABLE";
+    for (identity, names) in [(Identity::Px4, PX4), (Identity::ArduPilot, ARDUPILOT)] {
+        let table = ParameterTable::new(identity);
+        let missing =
+            names.split_whitespace().filter(|name| !table.entries().iter().any(|entry| entry.id == *name));
+        assert_eq!(missing.collect::<Vec<_>>(), Vec::<&str>::new(), "{identity:?}");
+    }
+}

@@ -9,6 +9,8 @@ mod ardupilot_flight;
 mod ardupilot_simulation;
 mod parameter;
 mod px4;
+mod px4_checks;
+mod px4_devices;
 mod values;
 
 pub use parameter::{KeptParameter, Owner};

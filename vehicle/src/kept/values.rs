@@ -5,7 +5,10 @@ use std::sync::LazyLock;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{KeptParameter, ardupilot, ardupilot_devices, ardupilot_flight, ardupilot_simulation, px4};
+use super::{
+    KeptParameter, ardupilot, ardupilot_devices, ardupilot_flight, ardupilot_simulation, px4, px4_checks,
+    px4_devices,
+};
 
 /// Places for values: as many as there are parameters, see the test.
 const PLACES: usize = 1000;
@@ -14,6 +17,8 @@ const PLACES: usize = 1000;
 pub fn kept_parameters() -> impl Iterator<Item = (usize, &'static KeptParameter)> {
     let groups = px4::PARAMETERS
         .iter()
+        .chain(px4_checks::PARAMETERS)
+        .chain(px4_devices::PARAMETERS)
         .chain(ardupilot::PARAMETERS)
         .chain(ardupilot_flight::PARAMETERS)
         .chain(ardupilot_devices::PARAMETERS)
