@@ -39,6 +39,8 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::equipment::TrackedSystem::default()),
         Box::new(super::mission_jump::MissionJumps),
         Box::new(super::reboot::Reboots),
+        Box::new(super::safety_switch::SafetySwitch),
+        Box::new(super::estimator_source::EstimatorSources),
         Box::new(super::motor_test::MotorTests),
         Box::new(super::magnetometer_calibration::MagnetometerCalibrations::default()),
         Box::new(super::high_latency::HighLatency::default()),

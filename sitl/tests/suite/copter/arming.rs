@@ -1,7 +1,7 @@
 //! What speaks against arming, and a battery that is gone.
 
 use super::flier::*;
-use mavlink::dialects::ardupilotmega::MavCmd;
+use mavlink::dialects::ardupilotmega::{MavCmd, MavResult};
 
 const ARM: [f32; 7] = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
 
@@ -82,4 +82,21 @@ fn rotors_that_idle_at_another_speed_do_not_take_off() {
             assert_eq!(flier.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, parameters), ACCEPTED);
         }
     }
+}
+
+/// As on a board without a safety switch: switching it off changes nothing, switching it on fails, and no other state exists.
+#[test]
+fn there_is_no_safety_switch_to_be_switched_on() {
+    let mut flier = Flier::new();
+    for (state, result) in [
+        (1.0, MavResult::MAV_RESULT_ACCEPTED),
+        (0.0, MavResult::MAV_RESULT_FAILED),
+        (2.0, MavResult::MAV_RESULT_DENIED),
+    ] {
+        let parameters = [state, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let answer = flier.command(MavCmd::MAV_CMD_DO_SET_SAFETY_SWITCH_STATE, parameters);
+        assert_eq!(answer, result as u8, "{state}");
+    }
+    flier.change_mode(GUIDED);
+    assert_eq!(flier.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ARM), ACCEPTED);
 }

@@ -192,3 +192,13 @@ fn a_short_jam_is_flown_through() {
     let drifted_m = (flier.vehicle().truth().position_m - from_m).xy().norm();
     assert!(knows_place(&mut flier) && flier.mode() == LOITER && drifted_m < 8.0, "{drifted_m} m");
 }
+
+/// The first set of sources is the one that is used; another is not promised.
+#[test]
+fn the_estimator_has_one_set_of_sources() {
+    let mut flier = Flier::new();
+    for (set, result) in [(1.0, MavResult::MAV_RESULT_ACCEPTED), (2.0, MavResult::MAV_RESULT_DENIED)] {
+        let parameters = [set, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert_eq!(flier.command(MavCmd::MAV_CMD_SET_EKF_SOURCE_SET, parameters), result as u8, "{set}");
+    }
+}
