@@ -138,3 +138,29 @@ fn a_polygon_may_be_closed_by_its_first_vertex() {
     assert_eq!(bench.autopilot.vehicle().plans().get(PlanKind::Fence).items().len(), 5, "as it came");
     assert_eq!((go_to(&mut bench, 25.0, 0.0), go_to(&mut bench, 15.0, 0.0)), (DENIED, 0));
 }
+
+/// A mission that comes in flight begins where the vehicle is: a wall between it and home is in the way of what is near home.
+#[test]
+fn a_mission_that_comes_in_flight_begins_where_the_vehicle_is() {
+    let start = settings(Identity::Px4);
+    let wall = polygon(&start, false, &[[5.0, -5.0], [8.0, -5.0], [8.0, 5.0], [5.0, 5.0]]);
+    let mut bench = hovering(&start, wall, Vec::new());
+    for [north, east] in [[0.0, 20.0], [20.0, 20.0], [20.0, 0.0]] {
+        assert_eq!(go_to(&mut bench, north, east), 0, "{:?}", bench.texts());
+        bench.fly_until("around the wall", 60.0, |bench| {
+            let [x, y, _] = bench.position();
+            (x - north).hypot(y - east) < 0.3
+        });
+    }
+    let mission = |north: f64| {
+        let waypoint = item(&start, command::NAV_WAYPOINT, 0.0, [north, 0.0]);
+        let [latitude, longitude, _] = waypoint.position;
+        [MissionItem { position: [latitude, longitude, 10.0], ..waypoint }]
+    };
+    bench.heard = upload(&mut bench, PlanKind::Mission, &mission(2.0));
+    assert_ne!(result(&bench.heard), Some(0), "behind the wall");
+    bench.heard = upload(&mut bench, PlanKind::Mission, &mission(12.0));
+    assert_eq!(result(&bench.heard), Some(0), "{:?}", bench.texts());
+    assert_eq!(bench.set_mode(Mode::Mission), 0, "{:?}", bench.texts());
+    bench.fly_until("there", 60.0, |bench| (bench.position()[0] - 12.0).abs() < 0.5);
+}

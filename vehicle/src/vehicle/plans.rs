@@ -78,19 +78,22 @@ impl KnownPlans {
     }
 }
 
-/// Refuses a mission whose places the fence of now forbids, or the ways between them: the fence may have come after the mission.
+/// Refuses a mission whose places the fence of now forbids, or the ways between them: the fence may have come after the mission. It begins
+/// at home, or where the vehicle flies now.
 ///
 /// # Errors
 /// [`PlanFault`] that names the item.
-pub fn check_way(situation: &Situation, program: &Program) -> Result<(), PlanFault> {
+pub fn check_way(situation: &Situation, program: &Program, from_here: bool) -> Result<(), PlanFault> {
     let Some(fence) = situation.fence().filter(Fence::bounds) else { return Ok(()) };
+    let home_m = situation.home.position_m;
+    let mut before_m = if from_here && situation.flies() { situation.outputs.position_m } else { home_m };
     let beginning = Beginning {
-        home_m: situation.home.position_m,
+        home_m,
+        from_m: before_m,
         takeoff_height_m: situation.conduct.takeoff_height_m,
         terrain: situation.terrain,
         grounded: !situation.flies(),
     };
-    let mut before_m = beginning.home_m;
     for PlannedLeg { item, through_m, place_m } in planned_way(program, &beginning) {
         let way_m = through_m.iter().chain([&place_m]);
         let breach = fence.breach(&place_m).or_else(|| breach_on(&fence, &before_m, way_m));

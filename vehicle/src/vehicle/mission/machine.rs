@@ -149,8 +149,9 @@ impl Mission {
         if !self.program.is_flown() {
             return Err(Refusal::later("Mission rejected: no mission uploaded"));
         }
+        let begins = first.is_none() && self.progress == Progress::NotStarted;
         check_reach(situation, &self.program)
-            .and_then(|()| check_way(situation, &self.program))
+            .and_then(|()| check_way(situation, &self.program, begins))
             .map_err(|fault| fault.located(situation.identity))
             .map_err(|reason| Refusal::denied(format!("Mission rejected: {reason}")))?;
         if let Some(first) = first {

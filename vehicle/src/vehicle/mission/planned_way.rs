@@ -25,8 +25,10 @@ pub struct PlannedLeg {
 /// What a mission begins with, and flies over.
 #[derive(Clone, Copy, Debug)]
 pub struct Beginning<'a> {
-    /// Where the vehicle takes off, NED, m.
+    /// What heights are above, NED, m.
     pub home_m: Vector3<f64>,
+    /// Where the vehicle is, NED, m.
+    pub from_m: Vector3<f64>,
     /// How high it climbs where its first step says nothing about that, m.
     pub takeoff_height_m: f64,
     /// The ground.
@@ -35,10 +37,10 @@ pub struct Beginning<'a> {
     pub grounded: bool,
 }
 
-/// All legs, from home on.
+/// All legs.
 pub fn planned_way(program: &Program, beginning: &Beginning) -> Vec<PlannedLeg> {
-    let Beginning { home_m, grounded, .. } = *beginning;
-    let mut planner = Planner { beginning: *beginning, at_m: home_m, grounded, legs: Vec::new() };
+    let Beginning { from_m, grounded, .. } = *beginning;
+    let mut planner = Planner { beginning: *beginning, at_m: from_m, grounded, legs: Vec::new() };
     let numbered = |item| Some((item, program.navigate(item)?));
     let mut steps = (program.first()..program.len()).filter_map(numbered).peekable();
     while let Some((mut item, step)) = steps.next() {

@@ -69,8 +69,9 @@ impl Vehicle {
             }
             Mode::Mission => {
                 let program = self.machines.mission.program();
-                let fault =
-                    check_reach(&situation, program).and_then(|()| check_way(&situation, program)).err();
+                let fault = check_reach(&situation, program)
+                    .and_then(|()| check_way(&situation, program, false))
+                    .err();
                 let text = fault.map(|fault| format!("mission: {}", fault.located(identity)));
                 obstacles.extend(text.map(|text| ArmingObstacle::new(Subject::Mission, text)));
             }

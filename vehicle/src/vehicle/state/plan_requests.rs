@@ -36,7 +36,7 @@ impl Vehicle {
                 self.plans.take_rally_points(items, points);
             }
         }
-        if let Err(fault) = check_way(&self.situation(), self.machines.mission.program()) {
+        if let Err(fault) = check_way(&self.situation(), self.machines.mission.program(), false) {
             self.decided
                 .say(Severity::Warning, format!("Mission cannot be flown: {}", fault.located(site.identity)));
         }
@@ -45,7 +45,9 @@ impl Vehicle {
 
     fn take_mission(&mut self, items: Vec<MissionItem>, site: &Site, amended: bool) -> Result<(), PlanFault> {
         let program = compile::mission(&items, site);
-        check_way(&self.situation(), &program)?;
+        // Of one that is flown, the step goes on that is flown.
+        let begins = !amended && self.mode() != Mode::Mission;
+        check_way(&self.situation(), &program, begins)?;
         self.plans.take_mission(items);
         if let Err(fault) = check_reach(&self.situation(), &program) {
             self.decided

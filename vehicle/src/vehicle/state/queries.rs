@@ -305,6 +305,7 @@ impl Vehicle {
     pub fn planned_way(&self) -> Vec<PlannedLeg> {
         let beginning = Beginning {
             home_m: self.home().position_m,
+            from_m: self.home().position_m,
             takeoff_height_m: self.conduct().takeoff_height_m,
             terrain: self.terrain(),
             grounded: true,
