@@ -119,6 +119,8 @@ class Simulation:
     ) -> npt.NDArray[np.void]:
         """Flies on for a time, s, and returns the outputs every `step` s, from now to the end.
 
+        Raises `FlightError` if the motion diverges, and `MemoryError` before it flies if there is no room for the result.
+
         The result is a structured array with a field `time`, s, and one for each output, or for those named by `outputs`;
         `pandas.DataFrame` takes it as it is. `inputs` is called with the time at the beginning of each step and returns inputs
         to set; without it the present ones stay.

@@ -35,10 +35,12 @@ def flight_page(table: Any, title: str = "Flight") -> str:
 
 
 def _check(table: Any) -> None:
-    names = list(table.dtype.names or [])
+    names = list(getattr(getattr(table, "dtype", None), "names", None) or [])
     missing = [name for name in _NEEDED if name not in names]
     if missing:
-        raise ValueError(f"the flight has no column {', '.join(missing)}; it has {', '.join(names) or 'no names'}")
+        raise ValueError(f"the flight has no column {', '.join(missing)}; it has {', '.join(names) or 'no named columns'}")
+    if len(table) == 0:
+        raise ValueError("the flight has no rows")
 
 
 def _write(flown: Path, page: Path) -> None:

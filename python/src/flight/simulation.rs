@@ -1,6 +1,7 @@
 //! One flight.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use quadrotor::Configuration;
@@ -39,11 +40,25 @@ pub fn instants(now_us: u64, end_us: u64, step_us: u64) -> PyResult<Vec<u64>> {
             now_us as f64 / 1e6
         )));
     }
+    let count = usize::try_from((end_us - now_us).div_ceil(step_us)).unwrap_or(usize::MAX);
+    let mut instants = room(count.saturating_add(1), 1)?;
     let steps = (1..).map(|count: u64| now_us.saturating_add(count.saturating_mul(step_us)));
-    Ok(std::iter::once(now_us)
-        .chain(steps.take_while(|time_us| *time_us < end_us))
-        .chain((end_us > now_us).then_some(end_us))
-        .collect())
+    instants.push(now_us);
+    instants.extend(steps.take_while(|time_us| *time_us < end_us));
+    instants.extend((end_us > now_us).then_some(end_us));
+    Ok(instants)
+}
+
+/// Room for rows of so many numbers.
+pub fn room<T>(rows: usize, numbers: usize) -> PyResult<Vec<T>> {
+    let mut room = Vec::new();
+    let fits = rows.checked_mul(numbers).is_some_and(|count| room.try_reserve_exact(count).is_ok());
+    if fits {
+        return Ok(room);
+    }
+    Err(PyMemoryError::new_err(format!(
+        "there is no memory for {rows} rows of {numbers} numbers; choose a longer step, a shorter duration or fewer outputs"
+    )))
 }
 
 impl Simulation {
@@ -189,8 +204,8 @@ impl Simulation {
         let chosen = self.chosen(python, names)?;
         let instants = instants(self.0.time_us(), end_us, step_us)?;
         let vehicle = &mut self.0;
+        let mut rows = room(instants.len(), chosen.len())?;
         let rows = python.detach(|| {
-            let mut rows = Vec::with_capacity(instants.len() * chosen.len());
             for time_us in &instants {
                 vehicle.advance_to(*time_us)?;
                 let outputs = vehicle.outputs();
