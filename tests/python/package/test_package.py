@@ -13,6 +13,7 @@ from importlib import metadata
 from pathlib import Path
 
 import numpy as np
+import pandas
 import pytest
 from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
@@ -131,7 +132,11 @@ def test_a_csv_file_of_fmpy_is_shown(tmp_path):
     assert run("view", missing).stderr.count("missing.csv") == 1
     (tmp_path / "other.csv").write_text("time,height\n0,1\n")
     wrong = run("view", str(tmp_path / "other.csv"))
-    assert wrong.returncode == 1 and "the flight has no column position.x, position.y, position.z" in wrong.stderr
+    assert wrong.returncode == 1 and "the flight has no column position.x, position.y, position.z; it has time,height" in wrong.stderr
+    assert run("view", str(tmp_path)).stderr == f"error: {tmp_path}: there is no such file\n"
+    # As pandas writes it, with its index.
+    pandas.DataFrame(Simulation().fly(0.1)).to_csv(tmp_path / "table.csv")
+    assert run("view", str(tmp_path / "table.csv")).returncode == 0
 
 
 def test_benchmark_prints_its_table():
