@@ -102,7 +102,10 @@ class Simulation:
         return float(self._native.read([name])[0])
 
     def advance(self, duration: float) -> None:
-        """Flies on for a time, s, under the present inputs. Raises `FlightError` if the motion diverges."""
+        """Flies on for a time, s, under the present inputs. Raises `FlightError` if the motion diverges.
+
+        Ctrl-C ends it where it is; with `actuation="rates"` it takes effect at the end.
+        """
         self._native.advance_to(self._native.time_us + microseconds("duration", duration))
 
     def advance_to(self, time: float) -> None:

@@ -8,6 +8,7 @@ mod arrays;
 mod control;
 mod errors;
 mod flight;
+mod interruption;
 
 use pyo3::prelude::*;
 

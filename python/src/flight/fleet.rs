@@ -20,6 +20,7 @@ use super::vehicle::{MOTION, Vehicle};
 use crate::arguments::whole;
 use crate::arrays::{matrix, vector};
 use crate::errors::{ArgumentError, ParameterError};
+use crate::interruption::Interruption;
 
 /// Most vehicles: each takes about 20 kB.
 const MOST_VEHICLES: usize = 1_000_000;
@@ -272,11 +273,14 @@ impl Fleet {
         let begun: Vec<u64> = self.fleet.vehicles().map(|member| member.vehicle.time_us()).collect();
         let mut table = room(instants.len(), self.fleet.len() * chosen.len())?;
         python.detach(|| {
+            let mut interruption = Interruption::new();
             for instant in &instants {
                 self.advance_to(|vehicle, _| begun[vehicle].saturating_add(*instant));
                 table.extend(self.rows(&chosen));
+                interruption.check()?;
             }
-        });
+            Ok::<_, PyErr>(())
+        })?;
         let shape = [instants.len(), self.fleet.len(), chosen.len()];
         let table = PyArray1::from_vec(python, table).reshape(shape)?;
         Ok((PyArray1::from_vec(python, instants), table))

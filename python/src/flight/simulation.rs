@@ -15,6 +15,10 @@ use super::saved::Saved;
 use super::vehicle::{MOTION, Vehicle};
 use crate::arrays::{array1, vector_of};
 use crate::errors::{ArgumentError, FlightError, ParameterError};
+use crate::interruption::Interruption;
+
+/// What is flown between looks whether the user has interrupted, µs: some milliseconds of the wall clock.
+const PIECE_US: u64 = 10_000_000;
 
 /// One flight, in integer µs: what is in seconds and by field names is beside it, in Python.
 #[pyclass(module = "lmpc_quadrotor._native")]
@@ -88,6 +92,20 @@ impl Simulation {
             None => Ok(outputs::of(self.0.actuation()).collect()),
         }
     }
+}
+
+/// Flies on to a time, unless the user interrupts: then the flight is somewhere before it.
+fn fly(vehicle: &mut Vehicle, time_us: u64, interruption: &mut Interruption) -> PyResult<()> {
+    let lost = |error: quadrotor::SimulationError| FlightError::new_err(error.to_string());
+    // Commanded rates turn the attitude that the vehicle has where an advance begins, so that such a flight is not divided.
+    if vehicle.actuation() != Actuation::Rates {
+        while vehicle.time_us().saturating_add(PIECE_US) < time_us {
+            vehicle.advance_to(vehicle.time_us() + PIECE_US).map_err(lost)?;
+            interruption.check()?;
+        }
+    }
+    vehicle.advance_to(time_us).map_err(lost)?;
+    interruption.check()
 }
 
 /// Sets parameters of a configuration.
@@ -188,7 +206,7 @@ impl Simulation {
 
     fn advance_to(&mut self, python: Python<'_>, time_us: u64) -> PyResult<()> {
         let vehicle = &mut self.0;
-        python.detach(|| vehicle.advance_to(time_us)).map_err(|error| FlightError::new_err(error.to_string()))
+        python.detach(|| fly(vehicle, time_us, &mut Interruption::new()))
     }
 
     /// Flies on and returns the times, µs, and the outputs there, a row for each.
@@ -206,14 +224,15 @@ impl Simulation {
         let vehicle = &mut self.0;
         let mut rows = room(instants.len(), chosen.len())?;
         let rows = python.detach(|| {
+            let mut interruption = Interruption::new();
             for time_us in &instants {
-                vehicle.advance_to(*time_us)?;
+                fly(vehicle, *time_us, &mut interruption)?;
                 let outputs = vehicle.outputs();
                 rows.extend(chosen.iter().map(|output| output.get(&outputs)));
             }
-            Ok::<_, quadrotor::SimulationError>(rows)
+            Ok::<_, PyErr>(rows)
         });
-        let rows = rows.map_err(|error| FlightError::new_err(error.to_string()))?;
+        let rows = rows?;
         let table = PyArray1::from_vec(python, rows).reshape([instants.len(), chosen.len()])?;
         Ok((PyArray1::from_vec(python, instants), table))
     }

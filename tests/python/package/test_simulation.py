@@ -1,7 +1,10 @@
 """Flights: the same doubles as the FMU in FMPy, saved states, parameters by name."""
 
 import doctest
+import os
 import pickle
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -234,6 +237,29 @@ def test_a_fleet_saves_restarts_and_survives_a_lost_vehicle():
     fleet.advance(2.0)
     assert fleet.failed.tolist() == [False, True, False]
     assert "the motion has diverged" in fleet.failures[1] and fleet.failures[0] is None
+
+
+INTERRUPTED = """
+import signal, sys
+from lmpc_quadrotor import Fleet, Simulation
+
+flight = {flight}
+signal.signal(signal.SIGALRM, signal.default_int_handler)  # as Ctrl-C, a moment after the flight has begun
+signal.setitimer(signal.ITIMER_REAL, 0.2)
+try:
+    flight.{call}
+except KeyboardInterrupt:
+    flight.advance(0.1)
+    print("interrupted")
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no alarm to interrupt with")
+@pytest.mark.parametrize("flight, call", [("Simulation()", "advance(1e9)"), ("Simulation()", "fly(1e6, 1.0, outputs=['altitude'])"), ("Fleet(2)", "fly(1e6, 1.0, outputs=['altitude'])")])
+def test_a_long_flight_is_interrupted_and_can_go_on(flight, call):
+    """It would take minutes."""
+    answer = subprocess.run([sys.executable, "-c", INTERRUPTED.format(flight=flight, call=call)], capture_output=True, text=True, timeout=30)
+    assert answer.stdout == "interrupted\n", answer
 
 
 def test_flights_do_not_hold_pythons_lock():
