@@ -4,7 +4,7 @@ import argparse
 import subprocess
 import sys
 
-from . import __version__
+from . import ArgumentError, __version__
 from .files import fmu_path, sitl_path
 
 
@@ -20,7 +20,10 @@ def _fmu(arguments: list[str]) -> int:
     parser.add_argument("model", nargs="?", default="quadrotor", choices=["quadrotor", "controller", "plant", "system"])
     parser.add_argument("--version", default="2.0", choices=["2.0", "3.0"], help="version of FMI (default: 2.0)")
     chosen = parser.parse_args(arguments)
-    print(fmu_path(chosen.model, chosen.version))
+    try:
+        print(fmu_path(chosen.model, chosen.version))
+    except (ArgumentError, FileNotFoundError) as problem:
+        parser.error(str(problem))
     return 0
 
 

@@ -1,4 +1,4 @@
-from collections.abc import Sequence
+from collections.abc import Iterable
 from typing import Any, Literal, final
 
 import numpy as np
@@ -118,7 +118,7 @@ class StateSpace:
 
 @final
 class LaguerreBasis:
-    """N = `terms` discrete Laguerre functions with the scaling factor a = `scale`, 0 ≤ a < 1; a = 0 are unit pulses."""
+    """N = `terms` discrete Laguerre functions, 1 to 1000, with the scaling factor a = `scale`, 0 ≤ a < 1; a = 0 are unit pulses."""
 
     def __new__(cls, terms: int, scale: float) -> LaguerreBasis: ...
     @staticmethod
@@ -142,7 +142,7 @@ class LaguerreBasis:
         """L(0), N."""
 
     def functions(self, samples: int) -> _Matrix:
-        """L(0), L(1), … as rows: samples×N."""
+        """L(0), L(1), … as rows: samples×N, 10 000 samples at most."""
 
 @final
 class Dlqr:
@@ -171,7 +171,7 @@ class Dlqr:
 
 @final
 class LmpcDesign:
-    """Laguerre MPC on the incremental model of a plant over N_p = `horizon` samples, with a basis for each input.
+    """Laguerre MPC on the incremental model of a plant over N_p = `horizon` samples, 1 to 10 000, with a basis for each input.
 
     Q is (n+q)×(n+q), R p×p. `weighting` says how the cost depends on the sample:
 
@@ -179,7 +179,8 @@ class LmpcDesign:
     * "exponential": Wang's, with `alpha` ≥ 1; well conditioned for any horizon;
     * "literal": the paper's, which need not give a stable loop, and is refused then.
 
-    `degree` λ, 0 < λ ≤ 1: all eigenvalues of the closed loop are asked to be smaller.
+    `degree` λ, 0 < λ ≤ 1: all eigenvalues of the closed loop are asked to be smaller. "terminal" takes no `alpha`, "literal" no
+    `degree`.
     """
 
     def __new__(
@@ -187,7 +188,7 @@ class LmpcDesign:
         plant: StateSpace,
         q: _Given,
         r: _Given,
-        bases: Sequence[LaguerreBasis],
+        bases: Iterable[LaguerreBasis],
         horizon: int,
         weighting: Literal["terminal", "exponential", "literal"] = "terminal",
         alpha: float = 1.0,
@@ -238,7 +239,7 @@ class StabilizedDesign:
         q: _Given,
         r: _Given,
         stabilizing_gain: _Given,
-        bases: Sequence[LaguerreBasis],
+        bases: Iterable[LaguerreBasis],
         degree: float = 1.0,
     ) -> StabilizedDesign: ...
     @property
@@ -267,7 +268,7 @@ class StabilizedDesign:
 
 @final
 class StateSpaceMpcDesign:
-    """State-space MPC: `moves` unknowns for each input within `horizon` samples.
+    """State-space MPC: `moves` unknowns for each input, 1 to 1000, within `horizon` samples, 2 to 10 000.
 
     `output_weight` is q×q, on y − r; `move_weight` p×p, on Δu; `increment_weight` n×n, on Δx; `terminal` (n+q)×(n+q), on
     [Δx; y − r] at the end of the horizon, for instance the cost of a `Dlqr`.
@@ -327,7 +328,7 @@ class KalmanPredictor:
 
 @final
 class Limit:
-    """directions · quantity ≤ upper on some samples of a plan; the values `upper` are given at each step.
+    """directions · quantity ≤ upper on some samples of a plan, 0 to 10 000; the values `upper` are given at each step.
 
     `quantity` is "increment" (Δu), "input" (u) or "state" (x). `directions` has a row for each bound and a column for each input
     or state. A `soft` limit gives way first when not all can be kept.
@@ -337,20 +338,20 @@ class Limit:
         cls,
         quantity: Literal["increment", "input", "state"],
         directions: _Given,
-        samples: Sequence[int],
+        samples: Iterable[int],
         soft: bool = False,
     ) -> Limit: ...
     @staticmethod
     def range(
-        quantity: Literal["increment", "input", "state"], count: int, samples: Sequence[int], soft: bool = False
+        quantity: Literal["increment", "input", "state"], count: int, samples: Iterable[int], soft: bool = False
     ) -> Limit:
-        """Upper and lower bounds of `count` inputs or states: `upper` is [largest…, −smallest…]."""
+        """Upper and lower bounds of `count` inputs or states, 1 to 1000: `upper` is [largest…, −smallest…]."""
 
     @staticmethod
     def polygon(
-        quantity: Literal["increment", "input", "state"], sides: int, samples: Sequence[int], soft: bool = False
+        quantity: Literal["increment", "input", "state"], sides: int, samples: Iterable[int], soft: bool = False
     ) -> Limit:
-        """A joint bound of two inputs or states: a regular polygon; `upper` = r cos(π/sides) lies inside the circle of radius r."""
+        """A joint bound of two inputs or states: a regular polygon of 3 to 1000 sides; `upper` = r cos(π/sides) lies inside the circle of radius r."""
 
     @property
     def bounds(self) -> int:
@@ -364,15 +365,15 @@ class SignalLimit:
     """
 
     def __new__(
-        cls, c: _Given, d: _Given, directions: _Given, samples: Sequence[int], relaxation: float
+        cls, c: _Given, d: _Given, directions: _Given, samples: Iterable[int], relaxation: float
     ) -> SignalLimit: ...
     @staticmethod
-    def input_range(states: int, inputs: int, samples: Sequence[int], relaxation: float) -> SignalLimit:
+    def input_range(states: int, inputs: int, samples: Iterable[int], relaxation: float) -> SignalLimit:
         """Upper and lower bounds of all inputs: `upper` is [largest…, −smallest…]."""
 
     @staticmethod
     def state_range(
-        states: int, inputs: int, limited: Sequence[int], samples: Sequence[int], relaxation: float
+        states: int, inputs: int, limited: Iterable[int], samples: Iterable[int], relaxation: float
     ) -> SignalLimit:
         """Upper and lower bounds of the states with these indices: `upper` is [largest…, −smallest…]."""
 
@@ -421,18 +422,18 @@ class Controller:
 
     @staticmethod
     def laguerre_mpc(
-        design: LmpcDesign, limits: Sequence[Limit] = ..., model_increment: bool = False
+        design: LmpcDesign, limits: Iterable[Limit] = ..., model_increment: bool = False
     ) -> Controller:
         """Laguerre MPC under limits. With `model_increment` the increment follows from the model: for actuators that lag."""
 
     @staticmethod
     def stabilized_mpc(
-        design: StabilizedDesign, limits: Sequence[SignalLimit] = ..., slack_cost: float = 10000.0
+        design: StabilizedDesign, limits: Iterable[SignalLimit] = ..., slack_cost: float = 10000.0
     ) -> Controller:
         """Laguerre MPC about a stabilizing feedback, under limits whose common slack of 1 costs `slack_cost`."""
 
     @staticmethod
-    def state_space_mpc(design: StateSpaceMpcDesign, limits: Sequence[Limit] = ...) -> Controller:
+    def state_space_mpc(design: StateSpaceMpcDesign, limits: Iterable[Limit] = ...) -> Controller:
         """State-space MPC under limits; those of states bound the deviation from the reference."""
 
     def step(
@@ -463,7 +464,10 @@ class Controller:
         """Begins anew with a plant whose last state and input these were, n and p, p of it feed-forward; zero if left out."""
 
     def apply(self, applied: _Given) -> None:
-        """Reports the input that was applied in truth, p, so that saturation does not wind up the integral action."""
+        """Reports the input that was applied in truth, p, so that saturation does not wind up the integral action.
+
+        What is not finite is ignored.
+        """
 
     def save(self) -> bytes:
         """The state, to go on from with `restore`."""
@@ -488,7 +492,7 @@ def spectral_radius(a: _Given) -> float:
     """The largest magnitude of the eigenvalues of a square matrix."""
 
 def condition_number(a: _Given) -> float:
-    """The ratio of the largest to the smallest singular value."""
+    """The ratio of the largest to the smallest singular value; infinite for a matrix without full rank."""
 
 def uncontrollable_eigenvalues(a: _Given, b: _Given) -> _Complex:
     """Eigenvalues of the part of (A, B) that B cannot reach; none when the pair is controllable."""
@@ -552,6 +556,6 @@ class Fleet:
     def record(
         self, duration_us: int, step_us: int, names: list[str] | None = None
     ) -> tuple[npt.NDArray[np.uint64], npt.NDArray[np.float64]]: ...
-    def restart(self, vehicles: list[int], motions: _Given | None = None) -> None: ...
+    def restart(self, vehicles: Iterable[int], motions: _Given | None = None) -> None: ...
     def save(self) -> list[bytes]: ...
     def restore(self, saved: list[bytes]) -> None: ...

@@ -21,7 +21,7 @@ class Fleet:
     >>> table["altitude"].shape
     (31, 3)
 
-    `threads` is how many flights go on at once; None is one on each core. A flight that diverges stands still where it did:
+    `count` is 1 to 1 000 000. `threads` is how many flights go on at once; None is one on each core. A flight that diverges stands still where it did:
     see `failed` and `failures`.
     """
 
@@ -96,7 +96,7 @@ class Fleet:
 
         `motions` has a row for each of them: 13 numbers as `Simulation.place` takes them. Without it they begin as at first.
         """
-        self._native.restart([int(vehicle) for vehicle in vehicles], motions)
+        self._native.restart(vehicles, motions)
 
     def save(self) -> list[bytes]:
         """Each flight as `Simulation.save` saves it; `Simulation.from_saved` goes on with a single one."""

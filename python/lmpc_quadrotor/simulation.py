@@ -102,7 +102,10 @@ class Simulation:
         return float(self._native.read([name])[0])
 
     def advance(self, duration: float) -> None:
-        """Flies on for a time, s, under the present inputs. Raises `FlightError` if the motion diverges."""
+        """Flies on for a time, s, under the present inputs. Raises `FlightError` if the motion diverges.
+
+        Ctrl-C ends it where it is; with `actuation="rates"` it takes effect at the end.
+        """
         self._native.advance_to(self._native.time_us + microseconds("duration", duration))
 
     def advance_to(self, time: float) -> None:
@@ -118,6 +121,8 @@ class Simulation:
         inputs: Callable[[float], Mapping[str, Value]] | None = None,
     ) -> npt.NDArray[np.void]:
         """Flies on for a time, s, and returns the outputs every `step` s, from now to the end.
+
+        Raises `FlightError` if the motion diverges, and `MemoryError` before it flies if there is no room for the result.
 
         The result is a structured array with a field `time`, s, and one for each output, or for those named by `outputs`;
         `pandas.DataFrame` takes it as it is. `inputs` is called with the time at the beginning of each step and returns inputs

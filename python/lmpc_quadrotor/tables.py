@@ -22,6 +22,9 @@ def by_name(argument: str, given: Values | None) -> dict[str, Any]:
         return {}
     if not isinstance(given, Mapping):
         raise ArgumentError(f"{argument} = {given!r}; expected names with values, such as {{'airframe.mass': 0.9}}")
+    for name in given:
+        if not isinstance(name, str):
+            raise ArgumentError(f"{argument} has the name {name!r}; expected text")
     return dict(given)
 
 
@@ -29,7 +32,11 @@ def list_of_names(argument: str, given: Iterable[str]) -> list[str]:
     """Names as a list; refuses a single string, which Python would split into letters."""
     if isinstance(given, str):
         raise ArgumentError(f"{argument} = {given!r}; expected a list of names: [{given!r}]")
-    return list(given)
+    names = list(given)
+    for name in names:
+        if not isinstance(name, str):
+            raise ArgumentError(f"{argument} has {name!r}; expected names")
+    return names
 
 
 @cache

@@ -35,10 +35,12 @@ def flight_page(table: Any, title: str = "Flight") -> str:
 
 
 def _check(table: Any) -> None:
-    names = list(table.dtype.names or [])
+    names = list(getattr(getattr(table, "dtype", None), "names", None) or [])
     missing = [name for name in _NEEDED if name not in names]
     if missing:
-        raise ValueError(f"the flight has no column {', '.join(missing)}; it has {', '.join(names) or 'no names'}")
+        raise ValueError(f"the flight has no column {', '.join(missing)}; it has {', '.join(names) or 'no named columns'}")
+    if len(table) == 0:
+        raise ValueError("the flight has no rows")
 
 
 def _write(flown: Path, page: Path) -> None:
@@ -47,7 +49,7 @@ def _write(flown: Path, page: Path) -> None:
     command = [sitl_path(), "--view-record", str(flown), "--view-page", str(page), "--log", "warn"]
     ended = subprocess.run(command, capture_output=True, text=True, env=settings)
     if ended.returncode != 0:
-        raise ValueError(ended.stderr.strip().removeprefix("error: "))
+        raise ValueError(ended.stderr.strip().removeprefix("lmpc-sitl: "))
 
 
 def _serve(path: Path) -> int:
@@ -67,10 +69,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     chosen = parser.parse_args(arguments)
     if chosen.serve:
         return _serve(chosen.file)
+    if not chosen.file.is_file():
+        print(f"error: {chosen.file}: there is no such file", file=sys.stderr)
+        return 1
     output = chosen.output or chosen.file.with_suffix(".html")
     try:
-        if chosen.file.suffix.lower() == ".csv":
-            _check(np.atleast_1d(np.genfromtxt(chosen.file, delimiter=",", names=True, deletechars="", encoding="utf-8", dtype=float)))
         _write(chosen.file, output)
     except (OSError, ValueError) as problem:
         # Some messages name the file themselves.

@@ -46,7 +46,27 @@ pub fn vector_of(name: &str, value: Option<&Bound<'_, PyAny>>, length: usize) ->
     if vector.len() == length {
         Ok(vector)
     } else {
-        Err(ArgumentError::new_err(format!("{name} has {} elements, expected {length}", vector.len())))
+        Err(ArgumentError::new_err(format!("{name} has {}, expected {length}", elements(vector.len()))))
+    }
+}
+
+/// So many elements, in words.
+pub fn elements(count: usize) -> String {
+    format!("{count} element{}", if count == 1 { "" } else { "s" })
+}
+
+/// As [`vector_of`], of finite numbers.
+pub fn finite_vector_of(
+    name: &str,
+    value: Option<&Bound<'_, PyAny>>,
+    length: usize,
+) -> PyResult<DVector<f64>> {
+    let vector = vector_of(name, value, length)?;
+    match vector.iter().find(|number| !number.is_finite()) {
+        Some(number) => {
+            Err(ArgumentError::new_err(format!("{name} contains {number}; expected finite numbers")))
+        }
+        None => Ok(vector),
     }
 }
 

@@ -38,6 +38,16 @@ pub fn design(refusal: &Refusal) -> PyErr {
     }
 }
 
+/// As [`design`], with the arguments whose matrices the formulas call otherwise: pairs of a formula's name and an argument's.
+pub fn design_of(refusal: &Refusal, names: &[(&str, &str)]) -> PyErr {
+    let text = refusal.to_string();
+    let named = names.iter().find_map(|(symbol, argument)| {
+        let rest = text.strip_prefix(symbol)?.strip_prefix(' ')?;
+        Some(format!("{argument} ({symbol}) {rest}"))
+    });
+    named.map_or_else(|| design(refusal), DesignError::new_err)
+}
+
 /// The argument, as the Python functions call it.
 fn argument_of(refusal: &Refusal) -> Option<&'static str> {
     Some(match refusal {

@@ -3,11 +3,12 @@
 //! `control` has the crate `lmpc`, `flight` the crate `quadrotor`. What is done with arrays, names and files in Python is beside it, in
 //! `python/lmpc_quadrotor`.
 
+mod arguments;
 mod arrays;
 mod control;
 mod errors;
 mod flight;
-mod whole;
+mod interruption;
 
 use pyo3::prelude::*;
 

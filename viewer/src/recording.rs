@@ -32,7 +32,7 @@ impl Recording {
     }
 
     /// Its bytes.
-    pub(crate) fn content(&self) -> Bytes {
+    pub fn content(&self) -> Bytes {
         self.content.clone()
     }
 }

@@ -15,6 +15,13 @@ An import of this module registers them:
 `QuadrotorEnv` and `QuadrotorVectorEnv` describe actions, observations and rewards.
 """
 
+try:
+    import gymnasium as _  # noqa: F401
+except ModuleNotFoundError as _missing:
+    raise ModuleNotFoundError(
+        "lmpc_quadrotor.gym needs Gymnasium: pip install 'lmpc-quadrotor[gym]'", name=_missing.name
+    ) from _missing
+
 from .actions import ActionKind
 from .environment import QuadrotorEnv
 from .registration import register

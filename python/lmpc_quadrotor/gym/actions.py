@@ -3,7 +3,9 @@
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
+from .._native import ArgumentError
 from ..tables import Numbers
 
 #: What an action stands for.
@@ -17,6 +19,19 @@ RATES = np.array([6.0, 6.0, 3.0])
 #: Distance of a position reference from the middle of the room at an action of 1, m.
 SPAN = 5.0
 _G = 9.80665
+
+
+def commanded(name: str, given: npt.ArrayLike, shape: tuple[int, ...]) -> Numbers:
+    """Actions of a shape; refuses what is no number."""
+    try:
+        actions = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ArgumentError(f"{name} = {given!r}; expected {shape} numbers within ±1") from None
+    if actions.shape != shape:
+        raise ArgumentError(f"{name} has the shape {actions.shape}, expected {shape}")
+    if not np.isfinite(actions).all():
+        raise ArgumentError(f"{name} contains a number that is not finite; allowed are -1 to 1")
+    return actions
 
 
 class Actions:

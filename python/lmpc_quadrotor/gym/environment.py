@@ -7,7 +7,8 @@ import gymnasium
 import numpy as np
 import numpy.typing as npt
 
-from .flock import Flock
+from .actions import commanded
+from .flock import Flock, refuse_pictures
 from .tasks import Task
 
 Observation = npt.NDArray[np.float32]
@@ -42,8 +43,9 @@ class QuadrotorEnv(gymnasium.Env[Observation, Observation]):
         episode: float = 10.0,
         render_mode: str | None = None,
     ) -> None:
+        refuse_pictures(render_mode)
         self.render_mode = render_mode
-        self._flock = Flock(1, task, action, parameters or {}, time_step, episode, 1)
+        self._flock = Flock(1, task, action, parameters, time_step, episode, 1)
         self.observation_space, self.action_space = self._flock.spaces()
 
     def reset(
@@ -56,8 +58,8 @@ class QuadrotorEnv(gymnasium.Env[Observation, Observation]):
         return observations[0], {"distance": float(distances[0])}
 
     def step(self, action: Observation) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Flies on by a step."""
-        actions = np.asarray(action, dtype=np.float64).reshape(1, 4)
+        """Flies on by a step. Numbers beyond ±1 count as ±1. Raises `ArgumentError` for others than four finite numbers."""
+        actions = commanded("action", action, (4,)).reshape(1, 4)
         self._flock.step(actions)
         observations, rewards, lost, distances = self._flock.look(actions)
         late = bool(self._flock.elapsed[0] >= self._flock.steps)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from .._native import ArgumentError
 from ..fleet import Fleet
 from ..simulation import Simulation
-from ..tables import Numbers
+from ..tables import Numbers, by_name
 from .actions import ACTUATION, Actions
 from .tasks import TASKS, Task
 
@@ -18,6 +18,8 @@ from .tasks import TASKS, Task
 CENTRE = np.array([0.0, 0.0, -10.0])
 #: How far a vehicle may go from the middle on each axis, m.
 ROOM = 5.0
+#: Longest episode, s.
+_LONGEST = 1e6
 _STATE = [
     "position.x", "position.y", "position.z", "velocity.x", "velocity.y", "velocity.z",
     "attitude.q0", "attitude.q1", "attitude.q2", "attitude.q3", "body_rate.p", "body_rate.q", "body_rate.r",
@@ -32,7 +34,7 @@ class Flock:
         count: int,
         task: str | Task,
         action: str,
-        parameters: Mapping[str, Any],
+        parameters: Mapping[str, Any] | None,
         time_step: float,
         episode: float,
         threads: int | None,
@@ -41,16 +43,16 @@ class Flock:
             if task not in TASKS:
                 raise ArgumentError(f"task = {task!r}; allowed are {', '.join(map(repr, TASKS))} and a Task")
             task = TASKS[task]()
+        if not all(callable(getattr(task, name, None)) for name in ("begin", "goals")):
+            raise ArgumentError(f"task = {task!r}; allowed are {', '.join(map(repr, TASKS))} and a Task")
         if action not in ACTUATION:
             raise ArgumentError(f"action = {action!r}; allowed are {', '.join(map(repr, ACTUATION))}")
-        if not 0.001 <= time_step <= 1.0:
-            raise ArgumentError(f"time_step = {time_step} s; allowed 0.001 to 1 s")
-        if not episode >= time_step:
-            raise ArgumentError(f"episode = {episode} s; allowed is one step of {time_step} s or more")
+        _check_seconds("time_step", time_step, 0.001, 1.0)
+        _check_seconds("episode", episode, time_step, _LONGEST)
         self.count, self.task = count, task
         self.time_step, self.steps = time_step, round(episode / time_step)
         start = {"initial.position.x": CENTRE[0], "initial.position.y": CENTRE[1], "initial.position.z": CENTRE[2]}
-        flown = {**start, **parameters}
+        flown = {**start, **by_name("parameters", parameters)}
         reference = {f"reference.position.{axis}": CENTRE[index] for index, axis in enumerate("xyz")}
         self.fleet = Fleet(count, flown, reference, actuation=ACTUATION[action], threads=threads)
         self.actions = Actions(action, Simulation(flown, actuation="rotors").parameters, CENTRE)
@@ -107,6 +109,21 @@ class Flock:
         spin = np.linalg.norm(state[:, 10:13], axis=1)
         rewards = np.exp(-np.square(distance)) - 0.1 * np.tanh(distance) - 0.01 * np.tanh(spin) - 0.001 * effort
         return observations, np.where(lost, -10.0, rewards), lost, distance
+
+
+def refuse_pictures(render_mode: str | None) -> None:
+    """Refuses to draw: flights of a `Simulation` are shown by `lmpc_quadrotor.view`."""
+    if render_mode is not None:
+        raise ArgumentError(f"render_mode = {render_mode!r}; allowed is None: lmpc_quadrotor.view.flight_page shows flights of a Simulation")
+
+
+def _check_seconds(name: str, value: float, least: float, most: float) -> None:
+    try:
+        allowed = least <= value <= most
+    except (TypeError, ValueError):
+        allowed = False
+    if not allowed:
+        raise ArgumentError(f"{name} = {value} s; allowed {least:g} to {most:g} s")
 
 
 def _quaternions(phi: Numbers, theta: Numbers, psi: Numbers) -> Numbers:

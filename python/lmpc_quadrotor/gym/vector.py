@@ -9,7 +9,8 @@ import numpy.typing as npt
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from .flock import Flock
+from .actions import commanded
+from .flock import Flock, refuse_pictures
 from .tasks import Task
 
 Observations = npt.NDArray[np.float32]
@@ -38,8 +39,9 @@ class QuadrotorVectorEnv(VectorEnv[Observations, Observations, npt.NDArray[Any]]
         threads: int | None = None,
         render_mode: str | None = None,
     ) -> None:
+        refuse_pictures(render_mode)
         self.num_envs, self.render_mode = num_envs, render_mode
-        self._flock = Flock(num_envs, task, action, parameters or {}, time_step, episode, threads)
+        self._flock = Flock(num_envs, task, action, parameters, time_step, episode, threads)
         self.single_observation_space, self.single_action_space = self._flock.spaces()
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
@@ -68,7 +70,7 @@ class QuadrotorVectorEnv(VectorEnv[Observations, Observations, npt.NDArray[Any]]
 
     def step(self, actions: Observations) -> tuple[Observations, npt.NDArray[Any], Flags, Flags, dict[str, Any]]:
         """All vehicles fly on by a step; those whose episode has ended begin the next one."""
-        given = np.asarray(actions, dtype=np.float64).reshape(self.num_envs, 4)
+        given = commanded("actions", actions, (self.num_envs, 4))
         began = self._ended.copy()
         self._flock.step(given)
         if began.any():

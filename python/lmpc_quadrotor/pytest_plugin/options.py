@@ -54,6 +54,7 @@ class Options:
                 hint = f"did you mean {close[0]}?" if close else f"allowed are {', '.join(names)}"
                 raise pytest.UsageError(f"the vehicle has no option {name}; {hint}")
         merged = dict(changes)
+        _check(merged)
         if "args" in merged:
             merged["args"] = (*self.args, *_strings("args", merged["args"]))
         if "faults" in merged:
@@ -78,6 +79,20 @@ class Options:
         for name, value in self.parameters.items():
             flags += ["--set", f"{name}={value}"]
         return [*flags, *self.args]
+
+
+def _check(changes: dict[str, Any]) -> None:
+    """Refuses what could not be written as flags: values themselves are judged by lmpc-sitl."""
+    __tracebackhide__ = True
+    for name, value in changes.items():
+        if name in ("faults", "args") and not isinstance(value, (str, list, tuple)):
+            raise pytest.UsageError(f"{name} = {value!r}; expected a list of strings")
+        if name == "parameters" and not isinstance(value, dict):
+            raise pytest.UsageError(f"parameters = {value!r}; expected names with values, such as {{'MPC_XY_VEL_MAX': 5}}")
+        if name == "timeout" and (isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0):
+            raise pytest.UsageError(f"timeout = {value!r}; expected a number of seconds above 0")
+        if name == "wait_armable" and not isinstance(value, bool):
+            raise pytest.UsageError(f"wait_armable = {value!r}; expected True or False")
 
 
 def _strings(name: str, value: Any) -> tuple[str, ...]:

@@ -78,7 +78,8 @@ class Sitl:
             self._check_running()
             if time.monotonic() > deadline:
                 raise SitlError(
-                    f"the vehicle could not be armed after {self.options.timeout} s; raise timeout, or set wait_armable=False:\n"
+                    f"the vehicle could not be armed after {self.options.timeout} s ({self._watch.reason}); "
+                    "remove the cause, raise timeout, or set wait_armable=False:\n"
                     f"{self.output()}"
                 )
 

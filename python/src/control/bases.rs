@@ -4,9 +4,9 @@ use nalgebra::DMatrix;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
+use crate::arguments::{MOST, MOST_SAMPLES, number, whole};
 use crate::arrays::{array1, array2};
 use crate::errors;
-use crate::whole::Whole;
 
 /// N discrete Laguerre functions with the scaling factor a.
 #[pyclass(frozen, module = "lmpc_quadrotor.control")]
@@ -16,13 +16,16 @@ pub struct LaguerreBasis(pub lmpc::LaguerreBasis);
 #[pymethods]
 impl LaguerreBasis {
     #[new]
-    fn new(terms: Whole, scale: f64) -> PyResult<Self> {
-        lmpc::LaguerreBasis::new(terms.0, scale).map(Self).map_err(|refusal| errors::design(&refusal))
+    fn new(terms: &Bound<'_, PyAny>, scale: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (terms, scale) = (whole("terms", terms, 1..=MOST)?, number("scale", scale)?);
+        lmpc::LaguerreBasis::new(terms, scale).map(Self).map_err(|refusal| errors::design(&refusal))
     }
 
     #[staticmethod]
-    fn for_control_horizon(terms: Whole, control_horizon: f64) -> PyResult<Self> {
-        let basis = lmpc::LaguerreBasis::for_control_horizon(terms.0, control_horizon);
+    fn for_control_horizon(terms: &Bound<'_, PyAny>, control_horizon: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let (terms, horizon) =
+            (whole("terms", terms, 1..=MOST)?, number("control_horizon", control_horizon)?);
+        let basis = lmpc::LaguerreBasis::for_control_horizon(terms, horizon);
         basis.map(Self).map_err(|refusal| errors::design(&refusal))
     }
 
@@ -47,8 +50,13 @@ impl LaguerreBasis {
     }
 
     /// L(0) … L(samples − 1) as rows.
-    fn functions<'py>(&self, python: Python<'py>, samples: Whole) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let mut functions = DMatrix::zeros(samples.0, self.0.terms());
+    fn functions<'py>(
+        &self,
+        python: Python<'py>,
+        samples: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let samples = whole("samples", samples, 0..=MOST_SAMPLES)?;
+        let mut functions = DMatrix::zeros(samples, self.0.terms());
         let mut l = self.0.initial().clone();
         for mut row in functions.row_iter_mut() {
             row.copy_from(&l.transpose());

@@ -11,7 +11,8 @@ use super::law::{self, Answer, Law, MOST_INPUTS, MOST_STATES, MOST_UNKNOWNS, Rec
 use super::limits::{Limit, SignalLimit};
 use super::models::StateSpace;
 use super::padding;
-use crate::arrays::{array1, matrix, vector, vector_of};
+use crate::arguments::{objects_or_none, positive};
+use crate::arrays::{array1, elements, finite_vector_of, matrix, vector, vector_of};
 use crate::errors::{self, ArgumentError};
 
 /// u(k), and how it was found.
@@ -166,6 +167,12 @@ impl Controller {
     }
 }
 
+/// Limits from a list of them.
+fn limits_of(limits: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<lmpc::Limit>> {
+    let limits: Vec<PyRef<'_, Limit>> = objects_or_none("limits", limits, "Limit")?;
+    Ok(limits.iter().map(|limit| limit.0.clone()).collect())
+}
+
 /// Refuses limits whose directions do not fit the plant, before zeros make them fit.
 fn check_limits(limits: &[lmpc::Limit], plant: &lmpc::StateSpace) -> PyResult<()> {
     for limit in limits {
@@ -193,18 +200,24 @@ impl Controller {
             let refusal = Refusal::Dimension { name: "gain", expected, actual: gain.shape() };
             return Err(errors::design(&refusal));
         }
+        if gain.iter().any(|number| !number.is_finite()) {
+            return Err(errors::design(&Refusal::NotFinite { name: "gain" }));
+        }
         Self::of(python, &Feedback { plant, gain: &gain }, plant, 0, 0)
     }
 
     #[staticmethod]
-    #[pyo3(signature = (design, limits = Vec::new(), model_increment = false))]
+    #[pyo3(
+        signature = (design, limits = None, model_increment = false),
+        text_signature = "(design, limits=..., model_increment=False)"
+    )]
     fn laguerre_mpc(
         python: Python<'_>,
         design: &LmpcDesign,
-        limits: Vec<Limit>,
+        limits: Option<&Bound<'_, PyAny>>,
         model_increment: bool,
     ) -> PyResult<Self> {
-        let limits: Vec<_> = limits.into_iter().map(|limit| limit.0).collect();
+        let limits = limits_of(limits)?;
         let plant = &design.problem.plant;
         check_limits(&limits, plant)?;
         let terms = design.problem.bases.iter().map(lmpc::LaguerreBasis::terms).sum();
@@ -214,40 +227,44 @@ impl Controller {
     }
 
     #[staticmethod]
-    #[pyo3(signature = (design, limits = Vec::new(), slack_cost = 1e4))]
+    #[pyo3(
+        signature = (design, limits = None, slack_cost = None),
+        text_signature = "(design, limits=..., slack_cost=10000.0)"
+    )]
     fn stabilized_mpc(
         python: Python<'_>,
         design: &StabilizedDesign,
-        limits: Vec<SignalLimit>,
-        slack_cost: f64,
+        limits: Option<&Bound<'_, PyAny>>,
+        slack_cost: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let limits: Vec<_> = limits.into_iter().map(|limit| limit.0).collect();
+        let limits: Vec<PyRef<'_, SignalLimit>> = objects_or_none("limits", limits, "SignalLimit")?;
+        let limits: Vec<_> = limits.iter().map(|limit| limit.0.clone()).collect();
         let plant = &design.problem.plant;
         for limit in &limits {
-            if limit.state.ncols() != plant.states() {
-                return Err(ArgumentError::new_err(format!(
-                    "limits: c of a limit has {} columns, expected {}",
-                    limit.state.ncols(),
-                    plant.states()
-                )));
+            for (name, found, expected) in
+                [("c", limit.state.ncols(), plant.states()), ("d", limit.input.ncols(), plant.inputs())]
+            {
+                if found != expected {
+                    return Err(ArgumentError::new_err(format!(
+                        "limits: {name} of a limit has {found} columns, expected {expected}"
+                    )));
+                }
             }
         }
-        if !(slack_cost > 0.0 && slack_cost.is_finite()) {
-            return Err(ArgumentError::new_err(format!("slack_cost = {slack_cost} is outside (0, ∞)")));
-        }
+        let slack_cost = slack_cost.map_or(Ok(1e4), |cost| positive("slack_cost", cost))?;
         let terms = design.problem.bases.iter().map(lmpc::LaguerreBasis::terms).sum();
         let bounds = limits.iter().map(|limit| limit.directions.nrows()).sum();
         Self::of(python, &Stabilized { design, limits, slack_cost }, plant, terms, bounds)
     }
 
     #[staticmethod]
-    #[pyo3(signature = (design, limits = Vec::new()))]
+    #[pyo3(signature = (design, limits = None), text_signature = "(design, limits=...)")]
     fn state_space_mpc(
         python: Python<'_>,
         design: &StateSpaceMpcDesign,
-        limits: Vec<Limit>,
+        limits: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let limits: Vec<_> = limits.into_iter().map(|limit| limit.0).collect();
+        let limits = limits_of(limits)?;
         check_limits(&limits, &design.plant)?;
         let bounds = limits.iter().map(|limit| limit.directions.nrows()).sum();
         let terms = design.moves * design.plant.inputs();
@@ -273,8 +290,8 @@ impl Controller {
         };
         if !upper.is_empty() && upper.len() != self.bounds {
             return Err(ArgumentError::new_err(format!(
-                "upper has {} elements, expected {}: one for each direction of each limit",
-                upper.len(),
+                "upper has {}, expected {}: one for each direction of each limit",
+                elements(upper.len()),
                 self.bounds
             )));
         }
@@ -312,9 +329,9 @@ impl Controller {
         input_reference: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
         self.law.take_over(
-            &vector_of("measured", measured, self.states)?,
-            &vector_of("applied", applied, self.inputs)?,
-            &vector_of("input_reference", input_reference, self.inputs)?,
+            &finite_vector_of("measured", measured, self.states)?,
+            &finite_vector_of("applied", applied, self.inputs)?,
+            &finite_vector_of("input_reference", input_reference, self.inputs)?,
         );
         Ok(())
     }

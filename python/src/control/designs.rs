@@ -7,9 +7,9 @@ use pyo3::prelude::*;
 
 use super::bases::LaguerreBasis;
 use super::models::StateSpace;
+use crate::arguments::{MOST, MOST_SAMPLES, number, number_or, objects, whole};
 use crate::arrays::{array2, complex, matrix};
 use crate::errors::{self, ArgumentError};
-use crate::whole::Whole;
 
 type Matrix<'py> = Bound<'py, PyArray2<f64>>;
 
@@ -20,15 +20,16 @@ pub struct Dlqr(lmpc::Dlqr);
 #[pymethods]
 impl Dlqr {
     #[new]
-    #[pyo3(signature = (a, b, q, r, degree = 1.0))]
+    #[pyo3(signature = (a, b, q, r, degree = None), text_signature = "(a, b, q, r, degree=1.0)")]
     fn new(
         python: Python<'_>,
         a: &Bound<'_, PyAny>,
         b: &Bound<'_, PyAny>,
         q: &Bound<'_, PyAny>,
         r: &Bound<'_, PyAny>,
-        degree: f64,
+        degree: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let degree = number_or("degree", degree, 1.0)?;
         let (a, b, q, r) = (matrix("a", a)?, matrix("b", b)?, matrix("q", q)?, matrix("r", r)?);
         let design = python.detach(|| lmpc::Dlqr::new(&a, &b, &q, &r, degree));
         design.map(Self).map_err(|refusal| errors::design(&refusal))
@@ -40,8 +41,9 @@ impl Dlqr {
         b: &Bound<'_, PyAny>,
         q: &Bound<'_, PyAny>,
         r: &Bound<'_, PyAny>,
-        alpha: f64,
+        alpha: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
+        let alpha = number("alpha", alpha)?;
         let (a, b, q, r) = (matrix("a", a)?, matrix("b", b)?, matrix("q", q)?, matrix("r", r)?);
         let design = lmpc::Dlqr::exponentially_weighted(&a, &b, &q, &r, alpha);
         design.map(Self).map_err(|refusal| errors::design(&refusal))
@@ -77,8 +79,9 @@ impl Problem {
         plant: &StateSpace,
         q: &Bound<'_, PyAny>,
         r: &Bound<'_, PyAny>,
-        bases: Vec<PyRef<'_, LaguerreBasis>>,
+        bases: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
+        let bases: Vec<PyRef<'_, LaguerreBasis>> = objects("bases", bases, "LaguerreBasis")?;
         let bases = bases.iter().map(|basis| basis.0.clone()).collect();
         Ok(Self { plant: plant.0.clone(), q: matrix("q", q)?, r: matrix("r", r)?, bases })
     }
@@ -111,23 +114,37 @@ impl LmpcDesign {
 #[pymethods]
 impl LmpcDesign {
     #[new]
-    #[pyo3(signature = (plant, q, r, bases, horizon, weighting = "terminal", alpha = 1.0, degree = 1.0))]
+    #[pyo3(
+        signature = (plant, q, r, bases, horizon, weighting = "terminal", alpha = None, degree = None),
+        text_signature = "(plant, q, r, bases, horizon, weighting='terminal', alpha=1.0, degree=1.0)"
+    )]
     #[allow(clippy::too_many_arguments, reason = "keywords in Python")]
     fn new(
         python: Python<'_>,
         plant: &StateSpace,
         q: &Bound<'_, PyAny>,
         r: &Bound<'_, PyAny>,
-        bases: Vec<PyRef<'_, LaguerreBasis>>,
-        horizon: Whole,
+        bases: &Bound<'_, PyAny>,
+        horizon: &Bound<'_, PyAny>,
         weighting: &str,
-        alpha: f64,
-        degree: f64,
+        alpha: Option<&Bound<'_, PyAny>>,
+        degree: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let Whole(horizon) = horizon;
+        let horizon = whole("horizon", horizon, 1..=MOST_SAMPLES)?;
+        let (alpha, degree) = (number_or("alpha", alpha, 1.0)?, number_or("degree", degree, 1.0)?);
         let weighting = match weighting {
+            "terminal" if alpha != 1.0 => {
+                return Err(ArgumentError::new_err(format!(
+                    "alpha = {alpha} has no effect with weighting = 'terminal'; choose 'exponential' or 'literal', or leave it out"
+                )));
+            }
             "terminal" => Weighting::Terminal { lambda: degree },
             "exponential" => Weighting::exponential(alpha, degree),
+            "literal" if degree != 1.0 => {
+                return Err(ArgumentError::new_err(format!(
+                    "degree = {degree} has no effect with weighting = 'literal'; choose 'terminal' or 'exponential', or leave it out"
+                )));
+            }
             "literal" => Weighting::Literal { alpha },
             other => {
                 return Err(ArgumentError::new_err(format!(
@@ -207,20 +224,24 @@ impl StabilizedDesign {
 #[pymethods]
 impl StabilizedDesign {
     #[new]
-    #[pyo3(signature = (plant, q, r, stabilizing_gain, bases, degree = 1.0))]
+    #[pyo3(
+        signature = (plant, q, r, stabilizing_gain, bases, degree = None),
+        text_signature = "(plant, q, r, stabilizing_gain, bases, degree=1.0)"
+    )]
     fn new(
         python: Python<'_>,
         plant: &StateSpace,
         q: &Bound<'_, PyAny>,
         r: &Bound<'_, PyAny>,
         stabilizing_gain: &Bound<'_, PyAny>,
-        bases: Vec<PyRef<'_, LaguerreBasis>>,
-        degree: f64,
+        bases: &Bound<'_, PyAny>,
+        degree: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let degree = number_or("degree", degree, 1.0)?;
         let problem = Problem::new(plant, q, r, bases)?;
         let stabilizing_gain = matrix("stabilizing_gain", stabilizing_gain)?;
         let design = python.detach(|| Self::of(&problem, &stabilizing_gain, degree));
-        let design = design.map_err(|refusal| errors::design(&refusal))?;
+        let design = design.map_err(|refusal| errors::design_of(&refusal, &[("K_s", "stabilizing_gain")]))?;
         Ok(Self { problem, stabilizing_gain, degree, design })
     }
 
@@ -255,6 +276,10 @@ impl StabilizedDesign {
     }
 }
 
+/// The weights of a state-space MPC as the formulas call them, and as Python does.
+const NAMES: [(&str, &str); 4] =
+    [("Q", "output_weight"), ("S", "move_weight"), ("W", "increment_weight"), ("P", "terminal")];
+
 /// State-space MPC: one unknown per move.
 #[pyclass(frozen, module = "lmpc_quadrotor.control")]
 pub struct StateSpaceMpcDesign {
@@ -275,12 +300,13 @@ impl StateSpaceMpcDesign {
         plant: &StateSpace,
         output_weight: &Bound<'_, PyAny>,
         move_weight: &Bound<'_, PyAny>,
-        horizon: Whole,
-        moves: Whole,
+        horizon: &Bound<'_, PyAny>,
+        moves: &Bound<'_, PyAny>,
         increment_weight: Option<&Bound<'_, PyAny>>,
         terminal: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let (Whole(horizon), Whole(moves)) = (horizon, moves);
+        let (horizon, moves) =
+            (whole("horizon", horizon, 2..=MOST_SAMPLES)?, whole("moves", moves, 1..=MOST)?);
         let plant = plant.0.clone();
         let weights = StateSpaceMpcWeights {
             output: matrix("output_weight", output_weight)?,
@@ -293,7 +319,7 @@ impl StateSpaceMpcDesign {
         };
         let design =
             python.detach(|| lmpc::StateSpaceMpcDesign::with_weights(&plant, &weights, horizon, moves));
-        let design = design.map_err(|refusal| errors::design(&refusal))?;
+        let design = design.map_err(|refusal| errors::design_of(&refusal, &NAMES))?;
         Ok(Self { plant, weights, horizon, moves, design })
     }
 

@@ -6,8 +6,16 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
 use super::models::StateSpace;
-use crate::arrays::{array1, array2, matrix, vector_of};
+use crate::arrays::{array1, array2, finite_vector_of, matrix, vector_of};
 use crate::errors;
+
+/// The covariances as the formulas call them, and as Python does.
+const NAMES: [(&str, &str); 4] = [
+    ("W", "state_noise"),
+    ("V", "measurement_noise"),
+    ("Z", "cross"),
+    ("[W Z; Zᵀ V]", "state_noise, measurement_noise and cross together"),
+];
 
 /// Design of the stationary predictor.
 #[pyclass(frozen, module = "lmpc_quadrotor.control")]
@@ -32,7 +40,8 @@ impl KalmanDesign {
             Some(cross) => NoiseCovariance { state, measurement, cross: matrix("cross", cross)? },
             None => NoiseCovariance::uncorrelated(state, measurement),
         };
-        let design = lmpc::KalmanDesign::new(&plant.0, &noise).map_err(|refusal| errors::design(&refusal))?;
+        let design = lmpc::KalmanDesign::new(&plant.0, &noise);
+        let design = design.map_err(|refusal| errors::design_of(&refusal, &NAMES))?;
         Ok(Self { plant: plant.0.clone(), design })
     }
 
@@ -64,7 +73,7 @@ impl KalmanPredictor {
         Ok(Self {
             plant: design.plant.clone(),
             gain: design.design.gain().clone(),
-            estimate: vector_of("estimate", estimate, states)?,
+            estimate: finite_vector_of("estimate", estimate, states)?,
         })
     }
 

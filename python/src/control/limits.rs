@@ -4,9 +4,12 @@ use lmpc::Quantity;
 use nalgebra::DMatrix;
 use pyo3::prelude::*;
 
+use crate::arguments::{MOST, MOST_SAMPLES, positive, whole, wholes};
 use crate::arrays::matrix;
 use crate::errors::ArgumentError;
-use crate::whole::Whole;
+
+/// Most components that the signal of a limit has.
+const MOST_COMPONENTS: usize = 3;
 
 /// directions · quantity ≤ upper at some future samples.
 #[pyclass(frozen, from_py_object, module = "lmpc_quadrotor.control")]
@@ -24,27 +27,59 @@ fn quantity_of(name: &str) -> PyResult<Quantity> {
     }
 }
 
+/// The samples on which a limit holds.
+fn samples_of(samples: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
+    wholes("samples", samples, 0..=MOST_SAMPLES)
+}
+
+/// A matrix of finite numbers.
+fn finite(name: &str, value: &Bound<'_, PyAny>) -> PyResult<DMatrix<f64>> {
+    let matrix = matrix(name, value)?;
+    match matrix.iter().find(|number| !number.is_finite()) {
+        Some(number) => {
+            Err(ArgumentError::new_err(format!("{name} contains {number}; expected finite numbers")))
+        }
+        None => Ok(matrix),
+    }
+}
+
 #[pymethods]
 impl Limit {
     #[new]
     #[pyo3(signature = (quantity, directions, samples, soft = false))]
-    fn new(quantity: &str, directions: &Bound<'_, PyAny>, samples: Vec<Whole>, soft: bool) -> PyResult<Self> {
-        let directions = matrix("directions", directions)?;
-        let samples = Whole::all(samples);
+    fn new(
+        quantity: &str,
+        directions: &Bound<'_, PyAny>,
+        samples: &Bound<'_, PyAny>,
+        soft: bool,
+    ) -> PyResult<Self> {
+        let (directions, samples) = (finite("directions", directions)?, samples_of(samples)?);
         Ok(Self(lmpc::Limit { quantity: quantity_of(quantity)?, directions, samples, soft }))
     }
 
     #[staticmethod]
     #[pyo3(signature = (quantity, count, samples, soft = false))]
-    fn range(quantity: &str, count: Whole, samples: Vec<Whole>, soft: bool) -> PyResult<Self> {
-        let limit = lmpc::Limit::range(quantity_of(quantity)?, count.0, Whole::all(samples));
+    fn range(
+        quantity: &str,
+        count: &Bound<'_, PyAny>,
+        samples: &Bound<'_, PyAny>,
+        soft: bool,
+    ) -> PyResult<Self> {
+        let (count, samples) = (whole("count", count, 1..=MOST)?, samples_of(samples)?);
+        let limit = lmpc::Limit::range(quantity_of(quantity)?, count, samples);
         Ok(Self(lmpc::Limit { soft, ..limit }))
     }
 
     #[staticmethod]
     #[pyo3(signature = (quantity, sides, samples, soft = false))]
-    fn polygon(quantity: &str, sides: Whole, samples: Vec<Whole>, soft: bool) -> PyResult<Self> {
-        let limit = lmpc::Limit::polygon(quantity_of(quantity)?, sides.0, Whole::all(samples));
+    fn polygon(
+        quantity: &str,
+        sides: &Bound<'_, PyAny>,
+        samples: &Bound<'_, PyAny>,
+        soft: bool,
+    ) -> PyResult<Self> {
+        let (sides, samples) = (whole("sides", sides, 3..=MOST)?, samples_of(samples)?);
+        let limit = lmpc::Limit::polygon(quantity_of(quantity)?, sides, samples);
         Ok(Self(lmpc::Limit { soft, ..limit }))
     }
 
@@ -68,59 +103,64 @@ impl SignalLimit {
         c: &Bound<'_, PyAny>,
         d: &Bound<'_, PyAny>,
         directions: &Bound<'_, PyAny>,
-        samples: Vec<Whole>,
-        relaxation: f64,
+        samples: &Bound<'_, PyAny>,
+        relaxation: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
-        if !(relaxation > 0.0 && relaxation.is_finite()) {
-            return Err(ArgumentError::new_err(format!("relaxation = {relaxation} is outside (0, ∞)")));
-        }
+        let relaxation = positive("relaxation", relaxation)?;
         let (state, input, directions) =
-            (matrix("c", c)?, matrix("d", d)?, matrix("directions", directions)?);
-        Ok(Self(lmpc::SignalLimit { state, input, directions, samples: Whole::all(samples), relaxation }))
+            (finite("c", c)?, finite("d", d)?, finite("directions", directions)?);
+        let components = state.nrows();
+        if !(1..=MOST_COMPONENTS).contains(&components) {
+            return Err(ArgumentError::new_err(format!(
+                "c has {components} rows; allowed are 1 to {MOST_COMPONENTS}, one for each component of the signal"
+            )));
+        }
+        for (name, found, what) in
+            [("d", input.nrows(), "rows"), ("directions", directions.ncols(), "columns")]
+        {
+            if found != components {
+                return Err(ArgumentError::new_err(format!(
+                    "{name} has {found} {what}, expected {components}: one for each row of c"
+                )));
+            }
+        }
+        let samples = samples_of(samples)?;
+        Ok(Self(lmpc::SignalLimit { state, input, directions, samples, relaxation }))
     }
 
     /// Upper and lower bounds of the inputs of a plant with so many states.
     #[staticmethod]
-    fn input_range(states: Whole, inputs: Whole, samples: Vec<Whole>, relaxation: f64) -> PyResult<Self> {
-        let directions = lmpc::SignalLimit::range(inputs.0);
-        let limit = lmpc::SignalLimit::of_inputs(states.0, inputs.0, directions, Whole::all(samples));
-        Self::giving_way(limit, relaxation)
+    fn input_range(
+        states: &Bound<'_, PyAny>,
+        inputs: &Bound<'_, PyAny>,
+        samples: &Bound<'_, PyAny>,
+        relaxation: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let (states, inputs) = (whole("states", states, 1..=MOST)?, whole("inputs", inputs, 1..=MOST)?);
+        let directions = lmpc::SignalLimit::range(inputs);
+        let limit = lmpc::SignalLimit::of_inputs(states, inputs, directions, samples_of(samples)?);
+        Ok(Self(limit.giving_way_by(positive("relaxation", relaxation)?)))
     }
 
     /// Upper and lower bounds of some states, by their indices.
     #[staticmethod]
     fn state_range(
-        states: Whole,
-        inputs: Whole,
-        limited: Vec<Whole>,
-        samples: Vec<Whole>,
-        relaxation: f64,
+        states: &Bound<'_, PyAny>,
+        inputs: &Bound<'_, PyAny>,
+        limited: &Bound<'_, PyAny>,
+        samples: &Bound<'_, PyAny>,
+        relaxation: &Bound<'_, PyAny>,
     ) -> PyResult<Self> {
-        let (Whole(states), Whole(inputs), limited) = (states, inputs, Whole::all(limited));
-        if let Some(index) = limited.iter().find(|index| **index >= states) {
-            return Err(ArgumentError::new_err(format!(
-                "limited has the index {index}; allowed are 0 to {}",
-                states.saturating_sub(1)
-            )));
-        }
+        let (states, inputs) = (whole("states", states, 1..=MOST)?, whole("inputs", inputs, 1..=MOST)?);
+        let limited = wholes("limited", limited, 0..=states - 1)?;
         let directions: DMatrix<f64> = lmpc::SignalLimit::range(limited.len());
-        let limit = lmpc::SignalLimit::of_states(states, inputs, &limited, directions, Whole::all(samples));
-        Self::giving_way(limit, relaxation)
+        let limit = lmpc::SignalLimit::of_states(states, inputs, &limited, directions, samples_of(samples)?);
+        Ok(Self(limit.giving_way_by(positive("relaxation", relaxation)?)))
     }
 
     /// How many values of `upper` it takes.
     #[getter]
     fn bounds(&self) -> usize {
         self.0.directions.nrows()
-    }
-}
-
-impl SignalLimit {
-    fn giving_way(limit: lmpc::SignalLimit, relaxation: f64) -> PyResult<Self> {
-        if relaxation > 0.0 && relaxation.is_finite() {
-            Ok(Self(limit.giving_way_by(relaxation)))
-        } else {
-            Err(ArgumentError::new_err(format!("relaxation = {relaxation} is outside (0, ∞)")))
-        }
     }
 }

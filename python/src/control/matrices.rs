@@ -65,7 +65,13 @@ fn spectral_radius(a: &Bound<'_, PyAny>) -> PyResult<f64> {
 /// The ratio of the largest to the smallest singular value.
 #[pyfunction]
 fn condition_number(a: &Bound<'_, PyAny>) -> PyResult<f64> {
-    Ok(lmpc::condition_number(&matrix("a", a)?))
+    let a = matrix("a", a)?;
+    if a.iter().any(|number| !number.is_finite()) {
+        return Err(errors::design(&lmpc::DesignError::NotFinite { name: "a" }));
+    }
+    // 0/0 of a matrix without a direction that it keeps.
+    let ratio = lmpc::condition_number(&a);
+    Ok(if ratio.is_nan() { f64::INFINITY } else { ratio })
 }
 
 /// Eigenvalues of the part of (A, B) that B cannot reach.
@@ -86,7 +92,12 @@ fn unobservable_eigenvalues<'py>(
     a: &Bound<'py, PyAny>,
     c: &Bound<'py, PyAny>,
 ) -> PyResult<Eigenvalues<'py>> {
-    let found = lmpc::unobservable_eigenvalues(&matrix("a", a)?, &matrix("c", c)?);
+    let (a, c) = (matrix("a", a)?, matrix("c", c)?);
+    if c.ncols() != a.nrows() {
+        let (expected, actual) = ((c.nrows(), a.nrows()), c.shape());
+        return Err(errors::design(&lmpc::DesignError::Dimension { name: "C", expected, actual }));
+    }
+    let found = lmpc::unobservable_eigenvalues(&a, &c);
     Ok(complex(python, &found.map_err(|refusal| errors::design(&refusal))?))
 }
 

@@ -4,6 +4,7 @@ use lmpc::{Augmented, Discretization};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
+use crate::arguments::{number, number_or};
 use crate::arrays::{array2, matrix};
 use crate::errors::{self, ArgumentError};
 
@@ -25,7 +26,7 @@ impl StateSpace {
         a: &Bound<'_, PyAny>,
         b: &Bound<'_, PyAny>,
         c: &Bound<'_, PyAny>,
-        sample_time: f64,
+        sample_time: &Bound<'_, PyAny>,
         discretization: &str,
     ) -> PyResult<Self> {
         let discretization = match discretization {
@@ -37,6 +38,7 @@ impl StateSpace {
                 )));
             }
         };
+        let sample_time = number("sample_time", sample_time)?;
         let (a, b, c) = (matrix("a", a)?, matrix("b", b)?, matrix("c", c)?);
         let plant = lmpc::StateSpace::from_continuous(&a, &b, &c, sample_time, discretization);
         plant.map(Self).map_err(|refusal| errors::design(&refusal))
@@ -95,14 +97,22 @@ impl StateSpace {
     }
 
     /// The weights Q = output · CᵀC and R = increment · I of the incremental model.
-    #[pyo3(signature = (output = 1.0, increment = 1.0))]
+    #[pyo3(signature = (output = None, increment = None), text_signature = "($self, output=1.0, increment=1.0)")]
     #[allow(clippy::type_complexity, reason = "two arrays, as Python takes them")]
     fn output_weights<'py>(
         &self,
         python: Python<'py>,
-        output: f64,
-        increment: f64,
+        output: Option<&Bound<'py, PyAny>>,
+        increment: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>)> {
+        let (output, increment) =
+            (number_or("output", output, 1.0)?, number_or("increment", increment, 1.0)?);
+        if !(output >= 0.0 && output.is_finite()) {
+            return Err(ArgumentError::new_err(format!("output = {output} is outside [0, ∞)")));
+        }
+        if !(increment > 0.0 && increment.is_finite()) {
+            return Err(ArgumentError::new_err(format!("increment = {increment} is outside (0, ∞)")));
+        }
         let weights = lmpc::Weights::output(&Augmented::new(&self.0), output, increment)
             .map_err(|refusal| errors::design(&refusal))?;
         Ok((array2(python, weights.q())?, array2(python, weights.r())?))

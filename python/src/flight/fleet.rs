@@ -15,11 +15,17 @@ use super::inputs::Input;
 use super::outputs::{self, Output};
 use super::parameters;
 use super::saved::Saved;
-use super::simulation::instants;
+use super::simulation::{instants, room};
 use super::vehicle::{MOTION, Vehicle};
+use crate::arguments::whole;
 use crate::arrays::{matrix, vector};
 use crate::errors::{ArgumentError, ParameterError};
-use crate::whole::Whole;
+use crate::interruption::Interruption;
+
+/// Most vehicles: each takes about 20 kB.
+const MOST_VEHICLES: usize = 1_000_000;
+/// Most threads; systems allow hardly more.
+const MOST_THREADS: usize = 1024;
 
 /// A vehicle of a fleet.
 struct Member {
@@ -133,6 +139,10 @@ impl Fleet {
     }
 }
 
+fn vehicle_shown(value: &Bound<'_, PyAny>) -> String {
+    value.repr().map_or_else(|_| String::new(), |shown| shown.to_string())
+}
+
 /// Vehicles with these settings. Those that are alike are designed once.
 fn members(
     settings: Vec<(Configuration, Commands)>,
@@ -164,21 +174,14 @@ impl Fleet {
     #[pyo3(signature = (count, parameters, inputs, actuation = "reference", threads = None))]
     fn new(
         python: Python<'_>,
-        count: Whole,
+        count: &Bound<'_, PyAny>,
         parameters: &Bound<'_, PyDict>,
         inputs: &Bound<'_, PyDict>,
         actuation: &str,
-        threads: Option<Whole>,
+        threads: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let (Whole(count), threads) = (count, threads.map(|threads| threads.0));
-        if count == 0 {
-            return Err(ArgumentError::new_err("count = 0; expected 1 vehicle or more"));
-        }
-        if threads == Some(0) {
-            return Err(ArgumentError::new_err(
-                "threads = 0; expected 1 or more, or None for one on each core",
-            ));
-        }
+        let count = whole("count", count, 1..=MOST_VEHICLES)?;
+        let threads = threads.map(|threads| whole("threads", threads, 1..=MOST_THREADS)).transpose()?;
         let actuation = Actuation::from_name(actuation)?;
         let mut configurations = vec![Configuration::default(); count];
         for (name, value) in parameters {
@@ -268,13 +271,16 @@ impl Fleet {
         let chosen = self.chosen(python, names)?;
         let instants = instants(0, duration_us, step_us)?;
         let begun: Vec<u64> = self.fleet.vehicles().map(|member| member.vehicle.time_us()).collect();
-        let mut table = Vec::with_capacity(instants.len() * self.fleet.len() * chosen.len());
+        let mut table = room(instants.len(), self.fleet.len() * chosen.len())?;
         python.detach(|| {
+            let mut interruption = Interruption::new();
             for instant in &instants {
                 self.advance_to(|vehicle, _| begun[vehicle].saturating_add(*instant));
                 table.extend(self.rows(&chosen));
+                interruption.check()?;
             }
-        });
+            Ok::<_, PyErr>(())
+        })?;
         let shape = [instants.len(), self.fleet.len(), chosen.len()];
         let table = PyArray1::from_vec(python, table).reshape(shape)?;
         Ok((PyArray1::from_vec(python, instants), table))
@@ -285,9 +291,10 @@ impl Fleet {
     fn restart(
         &mut self,
         python: Python<'_>,
-        vehicles: Vec<usize>,
+        vehicles: &Bound<'_, PyAny>,
         motions: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
+        let vehicles = self.indices(vehicles)?;
         let motions = motions.map(|motions| matrix("motions", motions)).transpose()?;
         if let Some(motions) = &motions
             && motions.shape() != (vehicles.len(), MOTION)
@@ -297,9 +304,6 @@ impl Fleet {
                 motions.shape(),
                 vehicles.len()
             )));
-        }
-        for vehicle in &vehicles {
-            self.check(*vehicle)?;
         }
         let motion_of = |row: usize| {
             motions
@@ -345,13 +349,22 @@ impl Fleet {
 }
 
 impl Fleet {
-    fn check(&self, vehicle: usize) -> PyResult<()> {
-        if vehicle < self.fleet.len() {
-            return Ok(());
-        }
-        Err(ArgumentError::new_err(format!(
-            "there is no vehicle {vehicle}; allowed are 0 to {}",
-            self.fleet.len().saturating_sub(1)
-        )))
+    /// Vehicles by their indices.
+    fn indices(&self, vehicles: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
+        let last = self.fleet.len().saturating_sub(1);
+        let items = vehicles.try_iter().map_err(|_| {
+            let shown = vehicle_shown(vehicles);
+            ArgumentError::new_err(format!(
+                "vehicles = {shown}; expected a list of whole numbers from 0 to {last}"
+            ))
+        })?;
+        let index = |item: PyResult<Bound<'_, PyAny>>| {
+            let item = item?;
+            item.extract::<usize>().ok().filter(|index| *index <= last).ok_or_else(|| {
+                let shown = vehicle_shown(&item);
+                ArgumentError::new_err(format!("there is no vehicle {shown}; allowed are 0 to {last}"))
+            })
+        };
+        items.map(index).collect()
     }
 }

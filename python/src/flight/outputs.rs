@@ -22,7 +22,8 @@ pub struct Output {
 const OF_CONTROLLERS: [&str; 5] =
     ["tilt_reference.", "setpoint.", "tracking_error.", "yaw_error", "controller."];
 
-fn all() -> impl Iterator<Item = Output> {
+/// All of them.
+pub fn all() -> impl Iterator<Item = Output> {
     ClosedLoop::VARIABLES.iter().copied().flatten().filter_map(|variable| match &variable.role {
         Role::Output { signal, .. } => Some(Output { variable, signal }),
         _ => None,

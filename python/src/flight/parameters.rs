@@ -29,13 +29,15 @@ pub fn set(
         Access::Real { set, .. } => {
             set(configuration, value.extract().map_err(|_| wrong("a number"))?);
         }
-        Access::Integer { set, .. } => {
+        Access::Integer { set, minimum, maximum, .. } => {
             // A whole number of NumPy's or a float's.
             let whole = value.extract::<i32>().ok().or_else(|| {
                 let number = value.extract::<f64>().ok()?;
                 (number.fract() == 0.0 && f64::from(number as i32) == number).then_some(number as i32)
             });
-            set(configuration, whole.ok_or_else(|| wrong("a whole number"))?);
+            let whole = whole.filter(|whole| (*minimum..=*maximum).contains(whole));
+            let expected = || wrong(&format!("a whole number from {minimum} to {maximum}"));
+            set(configuration, whole.ok_or_else(expected)?);
         }
         Access::Enumeration { choice, set, .. } => {
             let names = || choice.items.iter().map(|item| item.0).collect::<Vec<_>>().join(", ");

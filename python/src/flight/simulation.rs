@@ -1,6 +1,7 @@
 //! One flight.
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use quadrotor::Configuration;
@@ -14,6 +15,10 @@ use super::saved::Saved;
 use super::vehicle::{MOTION, Vehicle};
 use crate::arrays::{array1, vector_of};
 use crate::errors::{ArgumentError, FlightError, ParameterError};
+use crate::interruption::Interruption;
+
+/// What is flown between looks whether the user has interrupted, µs: some milliseconds of the wall clock.
+const PIECE_US: u64 = 10_000_000;
 
 /// One flight, in integer µs: what is in seconds and by field names is beside it, in Python.
 #[pyclass(module = "lmpc_quadrotor._native")]
@@ -39,11 +44,25 @@ pub fn instants(now_us: u64, end_us: u64, step_us: u64) -> PyResult<Vec<u64>> {
             now_us as f64 / 1e6
         )));
     }
+    let count = usize::try_from((end_us - now_us).div_ceil(step_us)).unwrap_or(usize::MAX);
+    let mut instants = room(count.saturating_add(1), 1)?;
     let steps = (1..).map(|count: u64| now_us.saturating_add(count.saturating_mul(step_us)));
-    Ok(std::iter::once(now_us)
-        .chain(steps.take_while(|time_us| *time_us < end_us))
-        .chain((end_us > now_us).then_some(end_us))
-        .collect())
+    instants.push(now_us);
+    instants.extend(steps.take_while(|time_us| *time_us < end_us));
+    instants.extend((end_us > now_us).then_some(end_us));
+    Ok(instants)
+}
+
+/// Room for rows of so many numbers.
+pub fn room<T>(rows: usize, numbers: usize) -> PyResult<Vec<T>> {
+    let mut room = Vec::new();
+    let fits = rows.checked_mul(numbers).is_some_and(|count| room.try_reserve_exact(count).is_ok());
+    if fits {
+        return Ok(room);
+    }
+    Err(PyMemoryError::new_err(format!(
+        "there is no memory for {rows} rows of {numbers} numbers; choose a longer step, a shorter duration or fewer outputs"
+    )))
 }
 
 impl Simulation {
@@ -73,6 +92,20 @@ impl Simulation {
             None => Ok(outputs::of(self.0.actuation()).collect()),
         }
     }
+}
+
+/// Flies on to a time, unless the user interrupts: then the flight is somewhere before it.
+fn fly(vehicle: &mut Vehicle, time_us: u64, interruption: &mut Interruption) -> PyResult<()> {
+    let lost = |error: quadrotor::SimulationError| FlightError::new_err(error.to_string());
+    // Commanded rates turn the attitude that the vehicle has where an advance begins, so that such a flight is not divided.
+    if vehicle.actuation() != Actuation::Rates {
+        while vehicle.time_us().saturating_add(PIECE_US) < time_us {
+            vehicle.advance_to(vehicle.time_us() + PIECE_US).map_err(lost)?;
+            interruption.check()?;
+        }
+    }
+    vehicle.advance_to(time_us).map_err(lost)?;
+    interruption.check()
 }
 
 /// Sets parameters of a configuration.
@@ -173,7 +206,7 @@ impl Simulation {
 
     fn advance_to(&mut self, python: Python<'_>, time_us: u64) -> PyResult<()> {
         let vehicle = &mut self.0;
-        python.detach(|| vehicle.advance_to(time_us)).map_err(|error| FlightError::new_err(error.to_string()))
+        python.detach(|| fly(vehicle, time_us, &mut Interruption::new()))
     }
 
     /// Flies on and returns the times, µs, and the outputs there, a row for each.
@@ -189,16 +222,17 @@ impl Simulation {
         let chosen = self.chosen(python, names)?;
         let instants = instants(self.0.time_us(), end_us, step_us)?;
         let vehicle = &mut self.0;
+        let mut rows = room(instants.len(), chosen.len())?;
         let rows = python.detach(|| {
-            let mut rows = Vec::with_capacity(instants.len() * chosen.len());
+            let mut interruption = Interruption::new();
             for time_us in &instants {
-                vehicle.advance_to(*time_us)?;
+                fly(vehicle, *time_us, &mut interruption)?;
                 let outputs = vehicle.outputs();
                 rows.extend(chosen.iter().map(|output| output.get(&outputs)));
             }
-            Ok::<_, quadrotor::SimulationError>(rows)
+            Ok::<_, PyErr>(rows)
         });
-        let rows = rows.map_err(|error| FlightError::new_err(error.to_string()))?;
+        let rows = rows?;
         let table = PyArray1::from_vec(python, rows).reshape([instants.len(), chosen.len()])?;
         Ok((PyArray1::from_vec(python, instants), table))
     }

@@ -17,6 +17,7 @@ mod recorded;
 mod request;
 mod sample;
 mod scene;
+mod table;
 
 pub use open::open_viewer;
 pub use page::LivePage;

@@ -7,7 +7,7 @@ use std::time::Duration;
 use viewer::{Recording, Viewer, standalone};
 
 use super::film::film;
-use super::open_viewer;
+use super::{open_viewer, table};
 use crate::configuration::{Arguments, check_view_page, check_view_record};
 use crate::failure::Failure;
 
@@ -61,7 +61,11 @@ fn recording(path: &Path, largest: u64, remedy: &str) -> Result<Recording, Failu
         check_size(path, bytes, LARGEST_TEXT, "write fewer columns or rows")?;
     }
     check_size(path, bytes, largest, remedy)?;
-    Recording::read(path).map_err(|source| Failure::read(path, source))
+    let recording = Recording::read(path).map_err(|source| Failure::read(path, source))?;
+    if extension == "csv" {
+        table::check(&recording.content()).map_err(|reason| wrong(&reason))?;
+    }
+    Ok(recording)
 }
 
 /// Refuses what browsers cannot open.

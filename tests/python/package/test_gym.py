@@ -10,6 +10,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
+from lmpc_quadrotor import ArgumentError
 from lmpc_quadrotor.gym import QuadrotorEnv, QuadrotorVectorEnv
 
 TASKS, ACTIONS = ["Hover", "Track"], ["rotors", "rates", "position"]
@@ -92,8 +93,36 @@ def test_a_thousand_vehicles_fly_at_once_and_begin_anew():
     begun, rewards, terminated, truncated, _ = environments.step(actions)
     assert not rewards.any() and not terminated.any() and not truncated.any()
     assert not np.array_equal(begun, first) and np.abs(begun[:, :3]).max() < 4.0
-    with pytest.raises(ValueError, match="action = 'thrust'; allowed are 'rotors', 'rates', 'position'"):
-        QuadrotorVectorEnv(2, action="thrust")
+
+
+@pytest.mark.parametrize(
+    "make, message",
+    [
+        (lambda: QuadrotorVectorEnv(2, action="thrust"), "action = 'thrust'; allowed are 'rotors', 'rates', 'position'"),
+        (lambda: QuadrotorEnv(task=5), "task = 5; allowed are 'hover', 'track' and a Task"),
+        (lambda: QuadrotorEnv(time_step="a"), "time_step = a s; allowed 0.001 to 1 s"),
+        (lambda: QuadrotorEnv(episode=float("inf")), "episode = inf s; allowed 0.02 to 1e+06 s"),
+        (lambda: QuadrotorEnv(parameters=5), "parameters = 5; expected names with values"),
+        (lambda: QuadrotorEnv(render_mode="human"), "render_mode = 'human'; allowed is None"),
+        (lambda: QuadrotorVectorEnv(2, render_mode="human"), "render_mode = 'human'; allowed is None"),
+        (lambda: QuadrotorVectorEnv(0), "count = 0; expected a whole number from 1"),
+        (lambda: QuadrotorEnv().step(np.zeros(3)), r"action has the shape (3,), expected (4,)"),
+        (lambda: QuadrotorEnv().step("up"), "action = 'up'; expected (4,) numbers within ±1"),
+        (lambda: QuadrotorVectorEnv(2).step(np.zeros(4)), "actions has the shape (4,), expected (2, 4)"),
+        (lambda: QuadrotorVectorEnv(2).step(np.full((2, 4), np.nan)), "actions contains a number that is not finite; allowed are -1 to 1"),
+    ],
+)
+def test_errors_name_what_is_wrong_and_what_is_allowed(make, message):
+    with pytest.raises(ArgumentError) as error:
+        make()
+    assert message in str(error.value)
+
+
+def test_without_gymnasium_an_import_says_what_to_install():
+    program = "import sys; sys.modules['gymnasium'] = None; import lmpc_quadrotor.gym"
+    answer = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    assert answer.returncode == 1
+    assert "lmpc_quadrotor.gym needs Gymnasium: pip install 'lmpc-quadrotor[gym]'" in answer.stderr
 
 
 def test_a_vector_flies_as_single_environments_do():

@@ -13,6 +13,7 @@ from importlib import metadata
 from pathlib import Path
 
 import numpy as np
+import pandas
 import pytest
 from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
@@ -73,6 +74,9 @@ def test_commands_say_how_they_are_used():
     assert "sitl" in run("--help").stdout
     wrong = run("fly")
     assert wrong.returncode == 2 and "unknown command 'fly'" in wrong.stderr
+    missing = run("fmu", "system", "--version", "3.0")
+    assert missing.returncode == 2 and "Traceback" not in missing.stderr
+    assert missing.stderr.splitlines()[-1].endswith("the SSP has FMUs of FMI 2.0: use version='2.0'")
 
 
 def test_types_are_those_of_the_module(tmp_path):
@@ -80,10 +84,14 @@ def test_types_are_those_of_the_module(tmp_path):
     program = tmp_path / "program.py"
     program.write_text(
         "import lmpc_quadrotor as quadrotor\n"
+        "import numpy as np\n"
         "flight = quadrotor.Simulation({'airframe.mass': 0.9})\n"
         "height: float = flight['altitude']\n"
         "basis = quadrotor.control.LaguerreBasis(5, 0.8)\n"
         "terms: int = basis.terms\n"
+        "limit = quadrotor.control.Limit.range('input', 1, np.arange(20))\n"
+        "fleet = quadrotor.Fleet(2)\n"
+        "fleet.restart(np.array([0]))\n"
     )
     for module, arguments in [
         ("mypy", ["--strict", "--cache-dir", str(tmp_path / "cache"), "-p", "lmpc_quadrotor"]),
@@ -106,6 +114,9 @@ def test_a_csv_file_of_fmpy_is_shown(tmp_path):
     assert name == "flight.csv" and base64.b64decode(enclosed) == (tmp_path / "flight.csv").read_bytes()
     assert "http://" not in page and "https://" not in page
     of_array = flight_page(Simulation().fly(0.1), "A & B")
+    for wrong, message in [(5, "it has no named columns"), (Simulation().fly(0.1)[:0], "the flight has no rows")]:
+        with pytest.raises(ValueError, match=message):
+            flight_page(wrong)
     assert of_array.startswith("<!doctype html>") and "<title>A &amp; B</title>" in of_array
     command = [sys.executable, "-m", "lmpc_quadrotor", "view", str(tmp_path / "flight.csv"), "--serve"]
     served = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True, env={**os.environ, "LMPC_SITL_VIEW": "127.0.0.1:0"})
@@ -121,7 +132,11 @@ def test_a_csv_file_of_fmpy_is_shown(tmp_path):
     assert run("view", missing).stderr.count("missing.csv") == 1
     (tmp_path / "other.csv").write_text("time,height\n0,1\n")
     wrong = run("view", str(tmp_path / "other.csv"))
-    assert wrong.returncode == 1 and "the flight has no column position.x, position.y, position.z" in wrong.stderr
+    assert wrong.returncode == 1 and "the flight has no column position.x, position.y, position.z; it has time,height" in wrong.stderr
+    assert run("view", str(tmp_path)).stderr == f"error: {tmp_path}: there is no such file\n"
+    # As pandas writes it, with its index.
+    pandas.DataFrame(Simulation().fly(0.1)).to_csv(tmp_path / "table.csv")
+    assert run("view", str(tmp_path / "table.csv")).returncode == 0
 
 
 def test_benchmark_prints_its_table():

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import lmpc_quadrotor
-from lmpc_quadrotor.pytest_plugin.armable import says_armable
+from lmpc_quadrotor.pytest_plugin.armable import _CHECKS, failed_checks
 
 
 def folder_of(pytester, name):
@@ -119,7 +119,17 @@ def test_a_failed_test_is_replayed_bit_for_bit(pytester, options):
         ("winds=3", "the vehicle has no option winds; did you mean wind?"),
         ("airframe='biplane'", "unknown airframe `biplane`; allowed paper, crazyflie"),
         ("5", "the marker sitl takes keywords only"),
-        ("speed=0, timeout=0.5", "could not be armed after 0.5 s; raise timeout, or set wait_armable=False"),
+        ("speed=0, timeout=0.5", "could not be armed after 0.5 s (it has sent no status, as while its time stands still)"),
+        (
+            "faults=['0:gps=off'], sensors='realistic', timeout=2",
+            "could not be armed after 2 s (not healthy: GPS, position estimate); remove the cause, raise timeout, or set wait_armable=False",
+        ),
+        ("timeout='long'", "timeout = 'long'; expected a number of seconds above 0"),
+        ("timeout=0", "timeout = 0; expected a number of seconds above 0"),
+        ("parameters=5", "parameters = 5; expected names with values"),
+        ("faults=5", "faults = 5; expected a list of strings"),
+        ("args=5", "args = 5; expected a list of strings"),
+        ("wait_armable='no'", "wait_armable = 'no'; expected True or False"),
     ],
 )
 def test_errors_say_what_is_wrong(pytester, marker, message):
@@ -153,16 +163,20 @@ def test_sys_status_is_read_as_pymavlink_writes_it():
         def write(self, data):
             self.data = bytes(data)
 
-    for health, expected in [(0x10000000, True), (0x0FFFFFFF, False)]:
+    every = 0x1FFFFFFF
+    for health, expected in [(every, []), (0x10000000, []), (every - 0x10000000 - 0x24, ["magnetometer", "GPS"]), (every - 0x10000000, ["an arming check that its status does not name"])]:
         sink = Sink()
-        common.MAVLink(sink, 1, 1).sys_status_send(0x1FFFFFFF, 0x1FFFFFFF, health, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)
-        assert says_armable(sink.data) is expected
+        common.MAVLink(sink, 1, 1).sys_status_send(every, every, health, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)
+        assert failed_checks(sink.data) == expected
         heartbeat = Sink()
         common.MAVLink(heartbeat, 1, 1).heartbeat_send(2, 12, 0, 0, 0)
-        assert says_armable(heartbeat.data + sink.data) is expected
+        assert failed_checks(heartbeat.data + sink.data) == expected
         damaged = bytearray(sink.data)
         damaged[12] ^= 1
-        assert not says_armable(bytes(damaged))
+        assert failed_checks(bytes(damaged)) is None
+    names = {bit: common.enums["MAV_SYS_STATUS_SENSOR"][bit].name for bit in _CHECKS}
+    assert names[0x20] == "MAV_SYS_STATUS_SENSOR_GPS" and names[0x2000] == "MAV_SYS_STATUS_SENSOR_Z_ALTITUDE_CONTROL"
+    assert names[0x4000] == "MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL" and names[0x200000] == "MAV_SYS_STATUS_AHRS"
 
 
 def test_the_plugin_costs_little(pytester):

@@ -1,7 +1,10 @@
 """Flights: the same doubles as the FMU in FMPy, saved states, parameters by name."""
 
 import doctest
+import os
 import pickle
+import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -154,7 +157,14 @@ def test_another_motion():
         (lambda: Simulation({"airframe.preset": "iriss"}), "airframe.preset = 'iriss'; expected one of paper, crazyflie"),
         (lambda: Simulation(0.9), "parameters = 0.9; expected names with values"),
         (lambda: Simulation({"reference.shaping": "no"}), "reference.shaping = 'no'; expected True or False"),
-        (lambda: Simulation({"sensor.seed": 1.5}), "sensor.seed = 1.5; expected a whole number"),
+        (lambda: Simulation({"sensor.seed": 1.5}), "sensor.seed = 1.5; expected a whole number from 0 to 2147483647"),
+        (lambda: Simulation({"sensor.seed": -1}), "sensor.seed = -1; expected a whole number from 0 to 2147483647"),
+        (lambda: Simulation({"sensor.seed": 2**40}), "sensor.seed = 1099511627776; expected a whole number from 0"),
+        (lambda: Simulation({"reference.position.x": 1.0}), "there is no parameter reference.position.x; it is an input: set it among the inputs"),
+        (lambda: Simulation(inputs={"airframe.mass": 1.0}), "there is no input airframe.mass; it is a parameter: set it among the parameters"),
+        (lambda: Simulation(inputs={"altitude": 1.0}), "there is no input altitude; it is an output, and only read"),
+        (lambda: Simulation({1: 2.0}), "parameters has the name 1; expected text"),
+        (lambda: Simulation().fly(1.0, outputs=[1]), "outputs has 1; expected names"),
         (lambda: Simulation({"airframe.mass": 5.0}), "too heavy"),
         (lambda: Simulation(inputs={"reference.position.x": 1e9}), "allowed -1000000 to 1000000 m"),
         (lambda: Simulation(inputs={"reference.yaw": "north"}), "reference.yaw = 'north'; expected a number"),
@@ -165,8 +175,11 @@ def test_another_motion():
         (lambda: Simulation().fly(1.0, outputs="altitude"), "outputs = 'altitude'; expected a list of names: ['altitude']"),
         (lambda: Simulation().fly(1.0, step=0.0), "step = 0.0 s; allowed is 1e-06 s or more"),
         (lambda: Simulation()["positon.x"], "there is no output positon.x; did you mean position.x?"),
-        (lambda: Fleet(0), "count = 0; expected 1 vehicle or more"),
-        (lambda: Fleet(-1), "-1 is not allowed; expected a whole number, 0 or more"),
+        (lambda: Fleet(0), "count = 0; expected a whole number from 1 to 1000000"),
+        (lambda: Fleet(-1), "count = -1; expected a whole number from 1 to 1000000"),
+        (lambda: Fleet(2, threads=0), "threads = 0; expected a whole number from 1 to 1024"),
+        (lambda: Fleet(2).restart([-1]), "there is no vehicle -1; allowed are 0 to 1"),
+        (lambda: Fleet(2).restart(0), "vehicles = 0; expected a list of whole numbers from 0 to 1"),
         (lambda: Fleet(3, {"airframe.mass": [0.6, 0.7]}), "airframe.mass has 2 values; expected one, or 3"),
         (lambda: Fleet(2).set({"reference.yaw": [1, 2, 3]}), "reference.yaw has 3 values; expected one, or 2"),
         (lambda: Fleet(2).restart([2]), "there is no vehicle 2; allowed are 0 to 1"),
@@ -176,6 +189,13 @@ def test_errors_name_what_is_wrong_and_what_is_allowed(make, message):
     with pytest.raises(ValueError) as error:
         make()
     assert message in str(error.value)
+
+
+@pytest.mark.parametrize("flight", [Simulation, lambda: Fleet(2)])
+def test_what_memory_does_not_hold_is_refused(flight):
+    """Before a step of it is flown."""
+    with pytest.raises(MemoryError, match="no memory for .* rows of 1 numbers; choose a longer step"):
+        flight().fly(1e12, step=1e-6, outputs=["altitude"])
 
 
 def test_time_does_not_run_back():
@@ -217,6 +237,29 @@ def test_a_fleet_saves_restarts_and_survives_a_lost_vehicle():
     fleet.advance(2.0)
     assert fleet.failed.tolist() == [False, True, False]
     assert "the motion has diverged" in fleet.failures[1] and fleet.failures[0] is None
+
+
+INTERRUPTED = """
+import signal, sys
+from lmpc_quadrotor import Fleet, Simulation
+
+flight = {flight}
+signal.signal(signal.SIGALRM, signal.default_int_handler)  # as Ctrl-C, a moment after the flight has begun
+signal.setitimer(signal.ITIMER_REAL, 0.2)
+try:
+    flight.{call}
+except KeyboardInterrupt:
+    flight.advance(0.1)
+    print("interrupted")
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no alarm to interrupt with")
+@pytest.mark.parametrize("flight, call", [("Simulation()", "advance(1e9)"), ("Simulation()", "fly(1e6, 1.0, outputs=['altitude'])"), ("Fleet(2)", "fly(1e6, 1.0, outputs=['altitude'])")])
+def test_a_long_flight_is_interrupted_and_can_go_on(flight, call):
+    """It would take minutes."""
+    answer = subprocess.run([sys.executable, "-c", INTERRUPTED.format(flight=flight, call=call)], capture_output=True, text=True, timeout=30)
+    assert answer.stdout == "interrupted\n", answer
 
 
 def test_flights_do_not_hold_pythons_lock():

@@ -135,6 +135,17 @@ def test_it_fits_every_screen_in_light_and_dark(start, look, scheme):
         for part in ("#view", "#horizon", "#state", "#charts figure"):
             box = shown.page.locator(part).first.bounding_box()
             assert box["width"] > 100 and box["height"] > 80, (size, part, box)
+        # A number with its sign and decimals is read at a glance: none of it is cut off.
+        for name in ("north", "east"):
+            field = shown.page.locator(f"#fly-to input[name={name}]")
+            field.fill("-1234.56")
+            room, needed = field.evaluate("""(field) => {
+                const style = getComputedStyle(field), ink = document.createElement("canvas").getContext("2d");
+                ink.font = style.font;
+                const spinner = style.appearance === "textfield" ? 0 : 16;
+                return [field.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight) - spinner, ink.measureText(field.value).width];
+            }""")
+            assert room > needed, (size, name, room, needed)
 
 
 def test_every_control_has_a_name_and_is_reached_by_keys(start, look):
@@ -467,8 +478,12 @@ def test_the_page_finds_a_program_that_was_started_again(start, look):
     first = start("--view", f"127.0.0.1:{port}")
     shown = look(first.ready["view"], expected=["ERR_CONNECTION_REFUSED"])
     shown.wait("page.isPilot && page.frame")
+    shown.page.get_by_role("button", name="Hold").click()
+    shown.page.get_by_text("hold: ").wait_for()
     assert first.stop() == 0
     shown.page.get_by_text("connection lost, trying again").wait_for()
+    # What the first program has answered is not what the second one does.
+    assert shown.page.locator("#answer").inner_text() == ""
     assert shown.page.get_by_role("button", name="Take off").is_disabled()
     start("--view", f"127.0.0.1:{port}")
     # The token is another: it shows the new flight, and says why it cannot steer it.

@@ -152,6 +152,8 @@ function connect() {
     },
     state: (state, reason) => {
       page.connection = { state, reason };
+      // What the program has answered is not what the one after it does.
+      if (state === "lost") controls.tell("", false);
       if (!page.recording) tellConnection();
     },
   });
