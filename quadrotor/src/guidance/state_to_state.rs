@@ -40,6 +40,8 @@ impl MotionProfile {
 
 /// Ways, speeds and accelerations below this are what rounding leaves of rest, in SI units of the axis.
 const ROUNDING: f64 = 1e-6;
+/// Axes that the solver is compiled for: once, as it is large. Fewer are filled up with copies of the last one, which change nothing.
+const SOLVED: usize = 3;
 /// Shares of the limits of acceleration and jerk that are tried one after the other.
 const SHARES: [f64; 5] = [1.0, 0.999, 0.99, 0.95, 0.9];
 
@@ -118,22 +120,22 @@ impl<const DOF: usize> StateToState<DOF> {
 
     /// This problem as it is.
     fn solve_exactly(&self) -> Option<[MotionProfile; DOF]> {
-        let mut input = InputParameter::<DOF>::new(None);
+        let mut input = InputParameter::<SOLVED>::new(None);
         input.synchronization = Synchronization::Time;
         input.control_interface = self.interface;
-        input.current_position = stack(self.from.map(|motion| motion.position));
-        input.current_velocity = stack(self.from.map(|motion| motion.velocity));
-        input.current_acceleration = stack(self.from.map(|motion| motion.acceleration));
-        input.target_position = stack(self.target_position);
-        input.target_velocity = stack(self.target_velocity);
-        input.max_velocity = stack(self.max_velocity);
-        input.min_velocity = Some(stack(self.min_velocity));
-        input.max_acceleration = stack(self.max_acceleration);
-        input.max_jerk = stack(self.max_jerk);
+        input.current_position = filled(self.from.map(|motion| motion.position));
+        input.current_velocity = filled(self.from.map(|motion| motion.velocity));
+        input.current_acceleration = filled(self.from.map(|motion| motion.acceleration));
+        input.target_position = filled(self.target_position);
+        input.target_velocity = filled(self.target_velocity);
+        input.max_velocity = filled(self.max_velocity);
+        input.min_velocity = Some(filled(self.min_velocity));
+        input.max_acceleration = filled(self.max_acceleration);
+        input.max_jerk = filled(self.max_jerk);
 
-        let mut trajectory = Trajectory::<DOF>::new(None);
+        let mut trajectory = Trajectory::<SOLVED>::new(None);
         // The cycle time matters only for discrete durations, which are not asked for.
-        let mut ruckig = Ruckig::<DOF, ThrowErrorHandler>::new(None, 0.01);
+        let mut ruckig = Ruckig::<SOLVED, ThrowErrorHandler>::new(None, 0.01);
         ruckig.calculate(&input, &mut trajectory).ok()?;
         let profiles = trajectory.profiles.first()?;
         Some(core::array::from_fn(|axis| {
@@ -164,8 +166,10 @@ fn add(pieces: &mut Option<MotionProfile>, start_s: f64, motion: Motion) {
     }
 }
 
-fn stack<const DOF: usize>(values: [f64; DOF]) -> DataArrayOrVec<f64, DOF> {
-    DataArrayOrVec::Stack(values)
+/// One to three values.
+fn filled<const DOF: usize>(values: [f64; DOF]) -> DataArrayOrVec<f64, SOLVED> {
+    const { assert!(0 < DOF && DOF <= SOLVED) };
+    DataArrayOrVec::Stack(core::array::from_fn(|axis| values[axis.min(DOF - 1)]))
 }
 
 #[cfg(test)]
