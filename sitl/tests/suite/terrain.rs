@@ -426,12 +426,11 @@ fn a_way_along_the_ground_begins_in_flight_and_goes_on_after_a_pause() {
     send(&mut bench, 18.0);
     bench.fly_until("it cruises", 20.0, |bench| bench.position()[0] > 8.0);
     send(&mut bench, 150.0);
-    let mut slowest_m_s = f64::INFINITY;
     while bench.position()[0] < 50.0 {
         bench.fly(0.01);
-        slowest_m_s = slowest_m_s.min(bench.autopilot.vehicle().truth().velocity_m_s.norm());
+        let velocity_m_s = bench.velocity();
+        assert!(velocity_m_s[0] > 0.5, "{velocity_m_s:?}");
     }
-    assert!(slowest_m_s > 0.5, "{slowest_m_s}");
     let pause = |bench: &mut Bench, goes_on: f32| {
         let asked = [goes_on, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         assert_eq!(bench.command(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, asked), 0);
