@@ -132,8 +132,12 @@ fn a_reposition_ends_at_its_goal() {
         for (down_m, horizontal_m) in [(-3.0, [0.0, 0.0]), (-20.0, [0.0, 0.0]), (-10.0, [40.0, 0.0])] {
             for change_s in [1.0, 3.0] {
                 let mut flight = Flight::hovering();
-                let goal =
-                    Reposition { down_m: Some(down_m), horizontal_m: Some(horizontal_m), yaw_rad: Some(2.0) };
+                let goal = Reposition {
+                    down_m: Some(down_m),
+                    horizontal_m: Some(horizontal_m),
+                    yaw_rad: Some(2.0),
+                    ..Reposition::default()
+                };
                 flight.vehicle.reposition(&goal).expect("a goal");
                 flight.fly(change_s);
                 flight.lower(&limits);

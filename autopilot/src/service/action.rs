@@ -288,7 +288,8 @@ fn reposition(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     // As in ArduPilot's guided mode, the nose then points where the vehicle flies.
     let turns = !vehicle.identity().is_ardupilot();
     let yaw_rad = Some(command.parameter(4)).filter(|yaw| turns && yaw.is_finite());
-    vehicle.reposition(&Reposition { horizontal_m, down_m, yaw_rad })?;
+    let is_above_ground = down_m.is_some() && plan::is_above_ground(frame);
+    vehicle.reposition(&Reposition { horizontal_m, down_m, yaw_rad, is_above_ground })?;
     let speed_m_s = command.parameter(1);
     if speed_m_s > 0.0 { use_speed(vehicle, 1.0, speed_m_s) } else { Ok(()) }
 }

@@ -13,7 +13,7 @@
 use mavlink::dialects::ardupilotmega::MavProtocolCapability;
 use nalgebra::{Quaternion, Rotation2, UnitQuaternion, Vector2, Vector3};
 use vehicle::identity::Identity;
-use vehicle::plan::{frame, is_global};
+use vehicle::plan::{frame, is_above_ground, is_global};
 use vehicle::world::{FARTHEST_M, Geodetic};
 use vehicle::{
     AttitudeSetPoint, AxisTarget, PositionSetPoint, Refusal, SetPoint, Severity, Vehicle, YawTarget,
@@ -75,7 +75,12 @@ impl Service for SetPoints {
 fn position(context: &mut Context, frame: &Frame) {
     let Some(target) = SetPositionTarget::read(frame) else { return };
     let resolved = resolve(&target, &context.vehicle);
-    take(context, resolved.map(SetPoint::Position));
+    let is_above_ground = is_above_ground(target.frame);
+    let led = |position: PositionSetPoint| match position.place() {
+        Some(_) if is_above_ground => SetPoint::AboveGround(position),
+        _ => SetPoint::Position(position),
+    };
+    take(context, resolved.map(led));
 }
 
 /// Takes SET_ATTITUDE_TARGET.

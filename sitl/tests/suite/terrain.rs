@@ -157,8 +157,14 @@ fn targets_above_the_terrain_are_above_the_ground_there() {
 }
 
 fn fly_to(bench: &mut Bench, coordinate_frame: MavFrame, place_m: &Vector3<f64>, alt: f32) {
+    let target = place_target(bench, coordinate_frame, place_m, alt);
+    bench.send(target);
+    bench.fly(25.0);
+}
+
+fn place_target(bench: &Bench, coordinate_frame: MavFrame, place_m: &Vector3<f64>, alt: f32) -> MavMessage {
     let place = bench.autopilot.vehicle().frame().to_geodetic(place_m);
-    bench.send(MavMessage::SET_POSITION_TARGET_GLOBAL_INT(SET_POSITION_TARGET_GLOBAL_INT_DATA {
+    MavMessage::SET_POSITION_TARGET_GLOBAL_INT(SET_POSITION_TARGET_GLOBAL_INT_DATA {
         target_system: 1,
         target_component: 1,
         coordinate_frame,
@@ -167,8 +173,7 @@ fn fly_to(bench: &mut Bench, coordinate_frame: MavFrame, place_m: &Vector3<f64>,
         lon_int: (place.longitude_deg * 1e7).round() as i32,
         alt,
         ..SET_POSITION_TARGET_GLOBAL_INT_DATA::default()
-    }));
-    bench.fly(25.0);
+    })
 }
 
 /// Waypoints on a hill, 10 m above the terrain each: it rests at that height over the ground of each of them.
@@ -291,4 +296,199 @@ fn the_nose_turns_on_a_way_above_the_terrain() {
         widest_deg = widest_deg.max(off_deg.abs());
     }
     assert!(widest_deg < 1.0, "{widest_deg} deg off the east");
+}
+
+const TERRAIN: MavFrame = MavFrame::MAV_FRAME_GLOBAL_TERRAIN_ALT;
+
+/// DO_REPOSITION to a place, north and east, m, and a height above the ground there, m.
+fn reposition(bench: &mut Bench, place_m: [f64; 2], above_m: f32) {
+    let place = bench.autopilot.vehicle().frame().to_geodetic(&Vector3::new(place_m[0], place_m[1], 0.0));
+    bench.send(MavMessage::COMMAND_INT(COMMAND_INT_DATA {
+        target_system: 1,
+        target_component: 1,
+        frame: TERRAIN,
+        command: MavCmd::MAV_CMD_DO_REPOSITION,
+        param1: -1.0,
+        param4: f32::NAN,
+        x: (place.latitude_deg * 1e7).round() as i32,
+        y: (place.longitude_deg * 1e7).round() as i32,
+        z: above_m,
+        ..COMMAND_INT_DATA::default()
+    }));
+}
+
+/// The same by ArduPilot's item that is a goal of the guided mode.
+fn guided_item(bench: &mut Bench, place_m: [f64; 2], above_m: f32) {
+    let place = bench.autopilot.vehicle().frame().to_geodetic(&Vector3::new(place_m[0], place_m[1], 0.0));
+    bench.send(MavMessage::MISSION_ITEM_INT(MISSION_ITEM_INT_DATA {
+        target_system: 1,
+        target_component: 1,
+        frame: TERRAIN,
+        command: MavCmd::MAV_CMD_NAV_WAYPOINT,
+        current: 2,
+        x: (place.latitude_deg * 1e7).round() as i32,
+        y: (place.longitude_deg * 1e7).round() as i32,
+        z: above_m,
+        ..MISSION_ITEM_INT_DATA::default()
+    }));
+}
+
+/// Flies until it rests at a place, north, at 10 m above the ground, as it is all the way. Whoever sends anything does it before each
+/// tenth of a second. Returns the slowest between 20 and 100 m north, m/s.
+fn fly_over_ridge(bench: &mut Bench, north_m: f64, mut send: impl FnMut(&mut Bench)) -> f64 {
+    let (mut slowest_m_s, mut highest_m) = (f64::INFINITY, 0.0_f64);
+    for _ in 0..1200 {
+        send(bench);
+        bench.fly(0.1);
+        let position_m = bench.position();
+        let above_m = above_ridge_m(position_m);
+        assert!((above_m - 10.0).abs() < 0.4, "{above_m} m at {position_m:?}");
+        if (20.0..100.0).contains(&position_m[0]) {
+            slowest_m_s = slowest_m_s.min(bench.autopilot.vehicle().truth().velocity_m_s.norm());
+        }
+        highest_m = highest_m.max(-position_m[2]);
+        if bench.is_near([north_m, 0.0, -10.0]) {
+            break;
+        }
+    }
+    assert!((highest_m - 30.0).abs() < 0.4, "over the top: {highest_m}");
+    assert!(bench.is_near([north_m, 0.0, -10.0]), "{:?}", bench.position());
+    slowest_m_s
+}
+
+/// A place behind the ridge, 10 m above the ground, that a message names once.
+#[test]
+fn the_way_to_a_place_above_the_terrain_follows_the_ground() {
+    for (identity, ask) in [
+        (Identity::Px4, reposition as fn(&mut Bench, [f64; 2], f32)),
+        (Identity::ArduPilot, reposition),
+        (Identity::ArduPilot, guided_item),
+        (Identity::ArduPilot, |bench, [north_m, east_m], above_m| {
+            let target = place_target(bench, TERRAIN, &Vector3::new(north_m, east_m, 0.0), above_m);
+            bench.send(target);
+        }),
+    ] {
+        let mut bench = Bench::hovering_with(&settings(identity, RIDGE));
+        bench.fly(0.1);
+        ask(&mut bench, [150.0, 0.0], 10.0);
+        bench.fly(0.1);
+        let there_m = bench.autopilot.vehicle().destination_m().expect("a place");
+        assert!((there_m - Vector3::new(150.0, 0.0, -10.0)).norm() < 0.1, "{there_m}");
+        let slowest_m_s = fly_over_ridge(&mut bench, 150.0, |_| {});
+        assert!(slowest_m_s > 0.5, "it does not stop: {slowest_m_s}");
+    }
+}
+
+/// Ten times a second, the same place again, or one that trembles, or one that moves on: it never stops on the way.
+#[test]
+fn places_that_are_streamed_above_the_terrain_do_not_stop_it() {
+    for identity in [Identity::Px4, Identity::ArduPilot] {
+        for (from_m, speed_m, trembles_m) in [(150.0, 0.0, 0.0), (150.0, 0.0, 0.1), (120.0, 0.2, 0.0)] {
+            let mut bench = Bench::hovering_with(&settings(identity, RIDGE));
+            let mut sent = 0_u32;
+            let mut send = move |bench: &mut Bench| {
+                let moved_m = (f64::from(sent) * speed_m).min(150.0 - from_m);
+                let off_m = if bench.position()[0] < 140.0 { trembles_m * f64::from(sent % 3) } else { 0.0 };
+                let place_m = Vector3::new(from_m + moved_m, off_m, 0.0);
+                let target = place_target(bench, TERRAIN, &place_m, 10.0);
+                bench.send(target);
+                sent += 1;
+            };
+            if identity == Identity::Px4 {
+                send(&mut bench);
+                assert_eq!(bench.set_mode(Mode::Offboard), 0);
+            }
+            let slowest_m_s = fly_over_ridge(&mut bench, 150.0, send);
+            assert!(slowest_m_s > 0.5, "{from_m} {speed_m} {trembles_m}: {slowest_m_s}");
+        }
+    }
+}
+
+/// Commands that repeat do not stop it either.
+#[test]
+fn repositions_above_the_terrain_that_repeat_go_on() {
+    for identity in [Identity::Px4, Identity::ArduPilot] {
+        let mut bench = Bench::hovering_with(&settings(identity, RIDGE));
+        let slowest_m_s = fly_over_ridge(&mut bench, 150.0, |bench| reposition(bench, [150.0, 0.0], 10.0));
+        assert!(slowest_m_s > 0.5, "{identity:?}: {slowest_m_s}");
+    }
+}
+
+/// Asked to go farther on its way over level ground, it begins the way along the ground in flight. A pause on the slope holds it there,
+/// and then it goes on along the ground.
+#[test]
+fn a_way_along_the_ground_begins_in_flight_and_goes_on_after_a_pause() {
+    let mut bench = Bench::hovering_with(&settings(Identity::ArduPilot, RIDGE));
+    let send = |bench: &mut Bench, north_m| {
+        let target = place_target(bench, TERRAIN, &Vector3::new(north_m, 0.0, 0.0), 10.0);
+        bench.send(target);
+    };
+    send(&mut bench, 18.0);
+    bench.fly_until("it cruises", 20.0, |bench| bench.position()[0] > 8.0);
+    send(&mut bench, 150.0);
+    while bench.position()[0] < 50.0 {
+        bench.fly(0.01);
+        let velocity_m_s = bench.velocity();
+        assert!(velocity_m_s[0] > 0.5, "{velocity_m_s:?}");
+    }
+    let pause = |bench: &mut Bench, goes_on: f32| {
+        let asked = [goes_on, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert_eq!(bench.command(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, asked), 0);
+    };
+    pause(&mut bench, 0.0);
+    bench.fly(6.0);
+    let held_m = bench.position();
+    assert!(held_m[0] < 70.0, "{held_m:?}");
+    bench.fly(3.0);
+    assert!(bench.is_near(held_m), "{held_m:?} {:?}", bench.position());
+    pause(&mut bench, 1.0);
+    let from_m = above_ridge_m(held_m);
+    bench.fly_until("it is there", 90.0, |bench| {
+        let position_m = bench.position();
+        let above_m = above_ridge_m(position_m);
+        let share = (position_m[0] - held_m[0]) / (150.0 - held_m[0]);
+        let expected_m = from_m + (10.0 - from_m) * share;
+        assert!((above_m - expected_m).abs() < 0.4, "{above_m} m at {position_m:?}");
+        bench.is_near([150.0, 0.0, -10.0])
+    });
+}
+
+/// Set-points lift a vehicle straight up from the ground, and lead it over the ridge.
+#[test]
+fn places_above_the_terrain_lead_up_from_the_ground() {
+    let mut bench = Bench::of(&settings(Identity::Px4, RIDGE));
+    let target = place_target(&bench, TERRAIN, &Vector3::new(150.0, 0.0, 0.0), 10.0);
+    bench.send(target.clone());
+    bench.fly(0.1);
+    bench.arm();
+    assert_eq!(bench.set_mode(Mode::Offboard), 0);
+    while bench.position()[2] > -9.7 {
+        bench.send(target.clone());
+        bench.fly(0.1);
+        assert!(bench.position()[0] < 0.1 && bench.autopilot.vehicle().is_armed(), "{:?}", bench.position());
+    }
+    fly_over_ridge(&mut bench, 150.0, |bench| bench.send(target.clone()));
+}
+
+/// Called back on the way up, it stops along the ground, and comes back along it.
+#[test]
+fn a_place_behind_it_turns_it_back_along_the_ground() {
+    let mut bench = Bench::hovering_with(&settings(Identity::ArduPilot, RIDGE));
+    reposition(&mut bench, [150.0, 0.0], 10.0);
+    bench.fly_until("it is on the slope", 60.0, |bench| bench.position()[0] > 50.0);
+    reposition(&mut bench, [-20.0, 0.0], 10.0);
+    let reference_m_s = |bench: &Bench| bench.autopilot.vehicle().outputs().setpoint.velocity_m_s;
+    let (mut before_m_s, mut ticks) = (reference_m_s(&bench), 0);
+    while !bench.is_near([-20.0, 0.0, -10.0]) {
+        bench.fly(0.01);
+        let now_m_s = reference_m_s(&bench);
+        // Faster than 10 m/s² it would jump.
+        assert!((now_m_s - before_m_s).norm() < 0.1, "from {before_m_s} to {now_m_s}");
+        before_m_s = now_m_s;
+        let position_m = bench.position();
+        let above_m = above_ridge_m(position_m);
+        assert!((above_m - 10.0).abs() < 0.4, "{above_m} m at {position_m:?}");
+        ticks += 1;
+        assert!(ticks < 12_000, "it is not back: {position_m:?}");
+    }
 }

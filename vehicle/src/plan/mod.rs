@@ -45,7 +45,7 @@ pub use look::Look;
 pub use mission_command::command_numbers;
 pub use place::Place;
 pub use program::{Program, ProgramStep};
-pub use site::{Site, frame, is_global};
+pub use site::{Site, frame, is_above_ground, is_global};
 pub use store::{Plan, Plans};
 pub use time_of_day::TimeOfDay;
 pub use zones::zones;

@@ -91,6 +91,11 @@ impl Site {
     }
 }
 
+/// Whether altitudes of a frame are above the ground.
+pub fn is_above_ground(frame: u8) -> bool {
+    matches!(frame, frame::GLOBAL_TERRAIN | frame::GLOBAL_TERRAIN_INT)
+}
+
 /// Whether a frame has latitude and longitude.
 pub fn is_global(frame: u8) -> bool {
     matches!(

@@ -12,6 +12,7 @@ use nalgebra::Vector3;
 use super::heading_policy::{HeadingPolicy, Purpose};
 use super::set_point::{PositionSetPoint, YawTarget};
 use super::situation::Situation;
+use super::spline::{Bend, Onward, Spline};
 use crate::plan::Place;
 use crate::plan::step::Navigate;
 use crate::surroundings::Terrain;
@@ -60,6 +61,22 @@ impl GroundWay {
         // A way that leads straight up or down has one part.
         let flown = if flown.is_finite() { round(flown * parts).clamp(0.0, parts - 1.0) } else { 0.0 };
         self.ends_of_parts_m(flown as usize, parts, terrain)
+    }
+
+    /// The next of them, as far as is looked ahead.
+    pub fn places_ahead_m(&self, here_m: &Vector3<f64>, situation: &Situation) -> Vec<Vector3<f64>> {
+        self.places_m(here_m, situation.terrain).take(PLACES_AHEAD).collect()
+    }
+
+    /// The next piece of its curve: onward in full motion, or from rest. `None` at its end.
+    pub fn piece(
+        &self,
+        here_m: Vector3<f64>,
+        onward: Option<Onward>,
+        situation: &Situation,
+    ) -> Option<Spline> {
+        let places_m = self.places_ahead_m(&here_m, situation);
+        Spline::new(here_m, onward, &places_m, Bend::Close, situation.limits())
     }
 
     /// Places on all of it, NED, m, up to its end; on a long way they lie farther apart.

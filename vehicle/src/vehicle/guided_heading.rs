@@ -30,7 +30,7 @@ const FLIES_M_S: f64 = 1.0;
 impl Lead {
     /// That of a set-point.
     pub fn of(set_point: &SetPoint) -> Self {
-        let SetPoint::Position(position) = set_point else { return Self::Attitude };
+        let Some(position) = set_point.position() else { return Self::Attitude };
         let any = |kind: fn(&AxisTarget) -> bool| position.axes.iter().any(kind);
         if any(|axis| matches!(axis, AxisTarget::Track { .. })) {
             Self::Trajectory

@@ -12,6 +12,7 @@ use super::failsafe::Failsafe;
 use super::fence_watch::FenceWatch;
 use super::flip::Flip;
 use super::follow::Follow;
+use super::ground_flight::GroundFlight;
 use super::hold_watch::HoldWatch;
 use super::injection::Injection;
 use super::landing::Landing;
@@ -101,6 +102,8 @@ pub struct Machines {
     pub stick_flight: StickFlight,
     /// Set-points.
     pub offboard: Offboard,
+    /// The flight along the ground to a place that is asked for.
+    pub ground_flight: GroundFlight,
     /// The way home.
     pub return_home: Return,
     /// The trail, and the way back on it.
@@ -165,6 +168,7 @@ impl Machines {
             simple: SimpleFlight::default(),
             stick_flight: StickFlight::default(),
             offboard: Offboard::default(),
+            ground_flight: GroundFlight::default(),
             return_home: Return::default(),
             smart_return: SmartReturn::default(),
             precision: PrecisionLanding::default(),

@@ -63,6 +63,7 @@ mod follow;
 mod follow_place;
 mod follow_settings;
 mod foreign_flight;
+mod ground_flight;
 mod ground_way;
 mod guided_heading;
 mod heading_policy;

@@ -2,6 +2,7 @@
 
 use super::attitude_flight::AttitudeFlight;
 use super::failsafe::Cause;
+use super::ground_flight::GroundFlight;
 use super::guided_heading::Lead;
 use super::notice::Severity;
 use super::proposal::Proposal;
@@ -25,8 +26,9 @@ pub struct Offboard {
     looks: bool,
     /// Whether it has run out (ArduPilot: it then holds its place until the next one).
     expired: bool,
-    /// What a pause has interrupted.
+    /// What a pause has interrupted, and where that led along the ground.
     paused: Option<Steering>,
+    paused_way: Option<PositionSetPoint>,
     /// Attitudes whose thrust asks for a climb rate.
     attitude: AttitudeFlight,
     /// Trajectories whose acceleration is to be found.
@@ -38,7 +40,7 @@ impl Offboard {
     pub fn take(&mut self, set_point: SetPoint, time_us: u64) -> bool {
         let changed = self.lead_by(Lead::of(&set_point));
         self.heading_is_asked |= set_point.turns();
-        if matches!(set_point, SetPoint::Position(_)) {
+        if set_point.position().is_some() {
             self.attitude.forget();
         }
         (self.latest, self.applied, self.expired) = (Some((set_point, time_us)), false, false);
@@ -71,9 +73,10 @@ impl Offboard {
     }
 
     /// Holds the place until [`resume`](Self::resume), whatever set-points come.
-    pub fn pause(&mut self, situation: &Situation, proposal: &mut Proposal) {
+    pub fn pause(&mut self, ground: &mut GroundFlight, situation: &Situation, proposal: &mut Proposal) {
         if self.paused.is_none() {
             self.straighten(situation, proposal);
+            self.paused_way = ground.interrupt(proposal.steering());
             self.paused = Some(*proposal.steering());
             proposal.follow(situation, &PositionSetPoint::HOLD);
             proposal.say(Severity::Info, "Paused: holding");
@@ -81,11 +84,18 @@ impl Offboard {
     }
 
     /// Goes on to where the pause has interrupted it, or with what was asked for meanwhile.
-    pub fn resume(&mut self, situation: &Situation, proposal: &mut Proposal) {
+    pub fn resume(&mut self, ground: &mut GroundFlight, situation: &Situation, proposal: &mut Proposal) {
         let waits = self.latest.is_some() && !self.applied;
-        match self.paused.take() {
-            Some(Steering::Goal(goal)) if !waits => proposal.steer(Steering::Goal(goal)),
-            Some(Steering::Motion(motion)) if !waits => proposal.follow(situation, &motion.set_point()),
+        match (self.paused.take(), self.paused_way.take()) {
+            (Some(_), Some(way)) if !waits => ground.go(&way, situation, proposal),
+            (paused, _) => Self::resume_steering(paused.filter(|_| !waits), situation, proposal),
+        }
+    }
+
+    fn resume_steering(paused: Option<Steering>, situation: &Situation, proposal: &mut Proposal) {
+        match paused {
+            Some(Steering::Goal(goal)) => proposal.steer(Steering::Goal(goal)),
+            Some(Steering::Motion(motion)) => proposal.follow(situation, &motion.set_point()),
             _ => {}
         }
     }
@@ -102,7 +112,7 @@ impl Offboard {
 
     /// Another mode begins: a set-point that is still young is steered to anew.
     pub fn begin(&mut self) {
-        (self.applied, self.paused) = (false, None);
+        (self.applied, self.paused, self.paused_way) = (false, None, None);
         // ArduPilot's guided mode begins as if a velocity of zero led it.
         (self.lead, self.heading_is_asked, self.looks) = (Some(Lead::Velocity), false, false);
         self.attitude.forget();
@@ -121,7 +131,7 @@ impl Offboard {
     }
 
     /// One tick of the offboard mode.
-    pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
+    pub fn step(&mut self, ground: &mut GroundFlight, situation: &Situation, proposal: &mut Proposal) {
         if self.is_paused() || situation.identity.is_ardupilot() && self.climbs_by_thrust(situation, proposal)
         {
             return;
@@ -141,15 +151,23 @@ impl Offboard {
         }
         let Some((set_point, _)) = self.latest else { return };
         match set_point {
-            SetPoint::Attitude(attitude) => proposal.follow_attitude(situation, &attitude),
+            SetPoint::Attitude(attitude) => {
+                ground.forget();
+                proposal.follow_attitude(situation, &attitude);
+            }
             // On the ground it idles until it is led upwards, and looks again with the next tick.
-            SetPoint::Position(position)
+            SetPoint::Position(position) | SetPoint::AboveGround(position)
                 if proposal.steering().kind() == SteeringKind::Idle
                     && !position.leads_up(situation.outputs.position_m.z) =>
             {
                 return;
             }
+            SetPoint::AboveGround(position) => {
+                self.stream = StreamedMotion::default();
+                ground.go(&position, situation, proposal);
+            }
             SetPoint::Position(position) => {
+                ground.forget();
                 let limits = situation.limits();
                 let steered = self.stream.take(&position.within(limits), limits, situation.time_us);
                 if let Some(set_point) = steered {
@@ -192,21 +210,22 @@ impl Offboard {
     }
 
     /// The failsafe has taken in that set-points have stopped. With an action that leaves the mode as it is, the vehicle holds
-    /// its place there.
-    pub fn hold_without_news(&mut self, situation: &Situation, proposal: &mut Proposal) {
+    /// its place there. Returns whether it begins to.
+    pub fn hold_without_news(&mut self, situation: &Situation, proposal: &mut Proposal) -> bool {
         let follows = situation.mode == Mode::Offboard && situation.descends_without_rotor().is_none();
         let stopped = !situation.set_points_are_recent && !situation.identity.is_ardupilot();
-        if follows && stopped && !self.expired {
+        let begins = follows && stopped && !self.expired;
+        if begins {
             self.expired = true;
             proposal.hold(situation);
         }
+        begins
     }
 
     /// ArduPilot stays in its mode: a velocity, an acceleration or an attitude ends, a position stays.
     fn guided_without_news(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let ends = match self.latest {
-            Some((SetPoint::Position(position), _)) => position.runs_on(),
-            Some((SetPoint::Attitude(_), _)) => true,
+            Some((set_point, _)) => set_point.position().is_none_or(PositionSetPoint::runs_on),
             None => false,
         };
         if ends && !self.expired && proposal.steering().kind() != SteeringKind::Idle {
@@ -221,7 +240,7 @@ impl Offboard {
 mod tests {
     use quadrotor::PositionReference;
 
-    use super::{Cause, Mode, Offboard, PositionSetPoint, SetPoint};
+    use super::{Cause, GroundFlight, Mode, Offboard, PositionSetPoint, SetPoint};
     use crate::identity::Identity;
     use crate::vehicle::proposal::Request;
     use crate::vehicle::scene::{Scene, said};
@@ -237,8 +256,12 @@ mod tests {
     fn step(offboard: &mut Offboard, scene: &mut Scene) -> Vec<Request> {
         let timeout_s = scene.conduct.set_point_timeout_s;
         scene.set_points_are_recent = offboard.is_recent(scene.outputs.time_us, timeout_s);
-        let mut requests = scene.show(|situation, proposal| offboard.step(situation, proposal));
-        requests.extend(scene.show(|situation, proposal| offboard.hold_without_news(situation, proposal)));
+        let mut requests = scene.show(|situation, proposal| {
+            offboard.step(&mut GroundFlight::default(), situation, proposal);
+        });
+        requests.extend(scene.show(|situation, proposal| {
+            offboard.hold_without_news(situation, proposal);
+        }));
         requests
     }
 

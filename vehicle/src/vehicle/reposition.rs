@@ -9,4 +9,6 @@ pub struct Reposition {
     pub down_m: Option<f64>,
     /// Heading, rad.
     pub yaw_rad: Option<f64>,
+    /// Whether the height is given above the ground: the way there follows the ground.
+    pub is_above_ground: bool,
 }

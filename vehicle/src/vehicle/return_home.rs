@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 use nalgebra::Vector3;
 
 use super::descent::descend;
-use super::ground_way::{GroundWay, PLACES_AHEAD, headed};
+use super::ground_way::{GroundWay, headed};
 use super::heading_policy::{HeadingPolicy, Purpose};
 use super::motion::wrapped;
 use super::notice::Severity;
@@ -21,7 +21,7 @@ use super::return_height::{follows_ground, way_z_m};
 use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::situation::Situation;
 use super::speeds::SpeedChange;
-use super::spline::{Bend, Spline};
+use super::spline::Spline;
 use super::steering::Steering;
 use super::tick::TICK_S;
 use crate::fence::{Progress, RouteSearch};
@@ -255,8 +255,7 @@ fn ground_piece(way: &GroundWay, before: Option<&Spline>, situation: &Situation)
         None => None,
     };
     let here_m = onward.map_or(situation.outputs.setpoint.position_m, |onward| onward.position_m);
-    let places_m: Vec<_> = way.places_m(&here_m, situation.terrain).take(PLACES_AHEAD).collect();
-    Spline::new(here_m, onward, &places_m, Bend::Close, situation.limits())
+    way.piece(here_m, onward, situation)
 }
 
 /// To a place and a height, z, m; the heading goes on.

@@ -154,16 +154,23 @@ pub struct AttitudeSetPoint {
 pub enum SetPoint {
     /// Position and heading.
     Position(PositionSetPoint),
+    /// A place that is given above the ground, and a heading: the way there follows the ground.
+    AboveGround(PositionSetPoint),
     /// Attitude and thrust.
     Attitude(AttitudeSetPoint),
 }
 
 impl SetPoint {
+    /// Position and heading, if it asks for these.
+    pub fn position(&self) -> Option<&PositionSetPoint> {
+        match self {
+            Self::Position(position) | Self::AboveGround(position) => Some(position),
+            Self::Attitude(_) => None,
+        }
+    }
+
     /// Whether it asks for a heading.
     pub fn turns(&self) -> bool {
-        match self {
-            Self::Position(position) => position.yaw != YawTarget::Hold,
-            Self::Attitude(_) => true,
-        }
+        self.position().is_none_or(|position| position.yaw != YawTarget::Hold)
     }
 }

@@ -2,7 +2,7 @@
 //! before it to the one behind it; the curvature is the mean of what cubic pieces before and behind it would have there.
 
 use nalgebra::Vector3;
-use quadrotor::Limits;
+use quadrotor::{Limits, PositionReference};
 
 use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::trajectory::{CurvePiece, CurveSpeed, EasedSpeed};
@@ -80,6 +80,35 @@ pub struct Onward {
     past_m: f64,
 }
 
+impl Onward {
+    /// On from a motion at a time, µs, if that is fast enough to have a direction and is about even.
+    pub fn of(motion: &PositionReference, time_us: u64) -> Option<Self> {
+        /// Slower than this, m/s, it has none.
+        const SLOWEST_M_S: f64 = 0.2;
+        /// What it accelerates by, m/s², ends at once.
+        const EVEN_M_S2: f64 = 0.2;
+        /// About as long as the pieces of a curve through places that lie densely.
+        const TANGENT_M: f64 = 4.0;
+        let speed_m_s = motion.velocity_m_s.norm();
+        if motion.acceleration_m_s2.norm() > EVEN_M_S2 {
+            return None;
+        }
+        Some(Self {
+            time_us,
+            position_m: motion.position_m,
+            tangent_m: motion.velocity_m_s.try_normalize(SLOWEST_M_S)? * TANGENT_M,
+            curvature: Vector3::zeros(),
+            speed: EasedSpeed::even(speed_m_s),
+            past_m: 0.0,
+        })
+    }
+
+    /// Its direction, of length one.
+    pub fn direction(&self) -> Vector3<f64> {
+        self.tangent_m.try_normalize(0.0).unwrap_or_default()
+    }
+}
+
 /// A piece that is flown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spline {
@@ -116,6 +145,11 @@ impl Spline {
             onward_m: *tangents_m.get(1)?,
             goes_on: ahead_m.len() > 1,
         })
+    }
+
+    /// Whether it begins no faster than it may be flown.
+    pub fn can_be_kept(&self) -> bool {
+        self.speed.fits(&self.fastest)
     }
 
     /// Where it ends, NED, m.

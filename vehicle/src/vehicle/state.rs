@@ -227,7 +227,9 @@ impl Vehicle {
             Mode::Stabilize | Mode::Manual | Mode::Acro => {
                 parts.stick_flight.step_by_thrust(situation, proposal);
             }
-            Mode::Offboard | Mode::GuidedAttitude => parts.offboard.step(situation, proposal),
+            Mode::Offboard | Mode::GuidedAttitude => {
+                parts.offboard.step(&mut parts.ground_flight, situation, proposal);
+            }
             Mode::Mission | Mode::MissionLanding => match parts.mission.step(situation, proposal) {
                 Helm::Mission => {}
                 Helm::ReturnBegins => parts.return_home.begin(situation, proposal),
@@ -240,7 +242,10 @@ impl Vehicle {
             Mode::Follow => parts.follow.step(situation, proposal),
         });
         self.consult(|parts, situation, proposal| {
-            parts.offboard.hold_without_news(situation, proposal);
+            if parts.offboard.hold_without_news(situation, proposal) {
+                parts.ground_flight.forget();
+            }
+            parts.ground_flight.step(situation, proposal);
             if situation.mode != Mode::SmartReturn {
                 parts.smart_return.watch(situation, proposal);
             }

@@ -40,6 +40,11 @@ fn go(context: &mut Context, message: &MissionItemMessage) -> Result<(), PlanFau
         return Err(PlanFault::of_plan(FaultCode::Invalid, "a guided target needs a place"));
     };
     let horizontal_m = place.horizontal_m.filter(|_| message.current == GOAL);
-    let goal = Reposition { horizontal_m, down_m: place.down_m(site.home_m.z), yaw_rad: None };
+    let goal = Reposition {
+        horizontal_m,
+        down_m: place.down_m(site.home_m.z),
+        yaw_rad: None,
+        is_above_ground: place.is_above_ground(),
+    };
     vehicle.reposition(&goal).map_err(|refusal: Refusal| fault(refusal.to_string()))
 }

@@ -125,6 +125,7 @@ impl Vehicle {
         self.machines.offboard.begin();
         self.machines.stick_flight.forget();
         self.machines.climb.forget();
+        self.machines.ground_flight.forget();
         self.consult(|parts, situation, proposal| match mode {
             Mode::Hold | Mode::Position | Mode::PositionHold => proposal.hold(situation),
             Mode::Offboard if !situation.set_points_are_recent => proposal.hold(situation),

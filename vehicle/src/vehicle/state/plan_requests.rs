@@ -91,7 +91,9 @@ impl Vehicle {
             }
             Mode::Offboard | Mode::Takeoff if self.situation().flies() => {
                 self.leave_takeoff();
-                self.consult(|parts, situation, proposal| parts.offboard.pause(situation, proposal));
+                self.consult(|parts, situation, proposal| {
+                    parts.offboard.pause(&mut parts.ground_flight, situation, proposal);
+                });
                 Ok(())
             }
             mode => {
@@ -109,7 +111,9 @@ impl Vehicle {
     /// [`Refusal`] when nothing was paused.
     pub fn continue_mission(&mut self) -> Result<(), Refusal> {
         if self.mode() == Mode::Offboard && self.machines.offboard.is_paused() {
-            self.consult(|parts, situation, proposal| parts.offboard.resume(situation, proposal));
+            self.consult(|parts, situation, proposal| {
+                parts.offboard.resume(&mut parts.ground_flight, situation, proposal);
+            });
             return Ok(());
         }
         self.machines.mission.may_continue()?;

@@ -13,7 +13,7 @@ use super::super::mission::{Beginning, MissionStatus, PlannedLeg, planned_way};
 use super::super::orbit_request::OrbitStatus;
 use super::super::set_point::PositionSetPoint;
 use super::super::speeds::with_speeds;
-use super::super::steering::{SteeringKind, TrackedAttitude};
+use super::super::steering::{Steering, SteeringKind, TrackedAttitude};
 use super::Vehicle;
 use crate::estimation::{Estimate, InstrumentHealth, Navigation, Readings, Validity};
 use crate::fault::Faults;
@@ -322,7 +322,19 @@ impl Vehicle {
     /// Where it is led to, NED, m: the end of a mission's leg or of a planned way, or the place that it was asked for.
     pub fn destination_m(&self) -> Option<Vector3<f64>> {
         let leg = self.leg_errors().filter(|_| self.mode() == Mode::Mission);
-        leg.map(|(end_m, _)| end_m).or_else(|| self.decided.steering().destination_m())
+        let steering = self.decided.steering();
+        leg.map(|(end_m, _)| end_m)
+            .or_else(|| self.machines.ground_flight.goal_m(steering))
+            .or_else(|| steering.destination_m())
+    }
+
+    /// The place that it was asked for, NED, m, or else that of its reference.
+    pub(super) fn asked_place_m(&self) -> Vector3<f64> {
+        let along_ground_m = self.machines.ground_flight.goal_m(self.decided.steering());
+        match self.decided.steering() {
+            Steering::Goal(goal) => goal.position_m,
+            _ => along_ground_m.unwrap_or(self.outputs().setpoint.position_m),
+        }
     }
 
     /// The end of the present leg, NED, m, and the vehicle's distance from the leg's line, positive to the right, m.

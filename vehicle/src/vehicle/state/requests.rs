@@ -18,7 +18,7 @@ use super::super::region::RegionOfInterest;
 use super::super::reposition::Reposition;
 use super::super::set_point::{AxisTarget, PositionSetPoint, SetPoint, YawTarget};
 use super::super::situation::Situation;
-use super::super::steering::{Steering, SteeringKind};
+use super::super::steering::SteeringKind;
 use super::super::target::TargetReport;
 use super::Vehicle;
 use crate::fault::Fault;
@@ -333,10 +333,7 @@ impl Vehicle {
             return Ok(());
         }
         // An axis that is not named stays where its reference is.
-        let now = match situation.steering {
-            Steering::Goal(goal) => goal.position_m,
-            _ => situation.outputs.setpoint.position_m,
-        };
+        let now = self.asked_place_m();
         let [x, y] = goal.horizontal_m.unwrap_or([now.x, now.y]);
         let target = Vector3::new(x, y, goal.down_m.unwrap_or(now.z));
         check_distance(&target)?;
@@ -344,6 +341,7 @@ impl Vehicle {
         self.machines.failsafe.release();
         let offboard = &self.machines.offboard;
         let looks = mode == self.mode() && offboard.lead() == Some(Lead::Command) && offboard.looks();
+        let before = (*self.decided.steering(), self.machines.ground_flight);
         self.enter(mode);
         let yaw = goal.yaw_rad.map_or(YawTarget::Hold, YawTarget::Angle);
         let axes = target.data.0[0].map(AxisTarget::Position);
@@ -352,7 +350,12 @@ impl Vehicle {
             if goal.yaw_rad.is_some() {
                 proposal.look_at(None);
             }
-            proposal.follow(situation, &PositionSetPoint { axes, yaw });
+            let set_point = PositionSetPoint { axes, yaw };
+            if goal.is_above_ground {
+                parts.ground_flight.go_on(before, &set_point, situation, proposal);
+            } else {
+                proposal.follow(situation, &set_point);
+            }
             parts.offboard.forget();
             parts.offboard.lead_by(Lead::Command);
             parts.offboard.look(looks);
@@ -422,7 +425,7 @@ impl Vehicle {
     pub fn set_point(&mut self, set_point: SetPoint) -> Result<(), Refusal> {
         let situation = self.situation();
         if situation.identity.is_ardupilot() {
-            let position = matches!(set_point, SetPoint::Position(_));
+            let position = set_point.position().is_some();
             match situation.mode {
                 Mode::Offboard | Mode::Takeoff => {}
                 Mode::GuidedAttitude if !position => {}
@@ -441,7 +444,7 @@ impl Vehicle {
             let reason = format!("{} follows positions, not attitudes or thrust", model.name);
             return Err(Refusal::denied(format!("Set-point denied: {reason}")));
         }
-        if let SetPoint::Position(position) = &set_point {
+        if let Some(position) = set_point.position() {
             check_set_point(&situation, position)?;
         }
         self.see(Cause::SetPointsLost, false);

@@ -61,6 +61,13 @@ impl EasedSpeed {
         [self.speed_m_s, self.acceleration_m_s2, self.jerk_m_s3]
     }
 
+    /// Whether it is no faster than a curve allows where the lead is.
+    pub fn fits(&self, curve: &CurveSpeed) -> bool {
+        /// The lead brakes a little harder where it has to.
+        const LITTLE_M_S: f64 = 0.05;
+        self.lead_m <= curve.rest_m && self.lead_m_s <= curve.fastest_m_s(self.lead_m) + LITTLE_M_S
+    }
+
     /// Whether it has come to rest where a rest is planned.
     pub fn rests(&self, curve: &CurveSpeed) -> bool {
         self.lead_m_s == 0.0
