@@ -1,6 +1,7 @@
 """A pilot's radio: pulses by UDP as ArduPilot's test suite sends them, MAVProxy's mode names, and MAVSDK's manual control."""
 
 import json
+import re
 import socket
 import struct
 import time
@@ -46,7 +47,10 @@ def in_mode(name: str):
 def test_ardupilot_takes_off_with_the_throttle(start, tmp_path):
     ready = tmp_path / "radio.json"
     vehicle = start("--autopilot", "ardupilot", "--rc-port", "0", "--speed", "8", "--record", str(tmp_path / "record"))
-    address = next(line for line in vehicle.output().splitlines() if "radio of system" in line).split()[-1]
+    # The vehicle is ready before its banner is printed.
+    radio_line = re.compile(r"radio of system \d+: UDP (\S+)\n")
+    eventually("the address of the radio", lambda: radio_line.search(vehicle.output()))
+    address = radio_line.search(vehicle.output())[1]
     connection = mavutil.mavlink_connection(f"udpout:{vehicle.addresses[0]}", source_system=255)
     connection.mav.heartbeat_send(6, 8, 0, 0, 0)
     radio = Radio(address)
