@@ -12,10 +12,14 @@ pub const MOST: usize = 1000;
 /// Largest number of samples that are looked ahead.
 pub const MOST_SAMPLES: usize = 10_000;
 
+/// A value as Python shows it; nothing if it cannot be shown.
+pub fn shown(value: &Bound<'_, PyAny>) -> String {
+    value.repr().map_or_else(|_| String::new(), |shown| shown.to_string())
+}
+
 /// The error about an argument that is something else.
 fn wrong(name: &str, value: &Bound<'_, PyAny>, expected: &str) -> PyErr {
-    let shown = value.repr().map_or_else(|_| String::new(), |shown| shown.to_string());
-    ArgumentError::new_err(format!("{name} = {shown}; expected {expected}"))
+    ArgumentError::new_err(format!("{name} = {}; expected {expected}", shown(value)))
 }
 
 /// A number.
@@ -30,7 +34,11 @@ pub fn number_or(name: &str, value: Option<&Bound<'_, PyAny>>, otherwise: f64) -
 
 /// A number above zero.
 pub fn positive(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
-    let number = number(name, value)?;
+    above_zero(name, number(name, value)?)
+}
+
+/// A number that is above zero and finite.
+pub fn above_zero(name: &str, number: f64) -> PyResult<f64> {
     if number > 0.0 && number.is_finite() {
         Ok(number)
     } else {

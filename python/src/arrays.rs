@@ -62,11 +62,17 @@ pub fn finite_vector_of(
     length: usize,
 ) -> PyResult<DVector<f64>> {
     let vector = vector_of(name, value, length)?;
-    match vector.iter().find(|number| !number.is_finite()) {
+    check_finite(name, vector.as_slice())?;
+    Ok(vector)
+}
+
+/// Refuses numbers of an argument of which one is not finite.
+pub fn check_finite(name: &str, numbers: &[f64]) -> PyResult<()> {
+    match numbers.iter().find(|number| !number.is_finite()) {
         Some(number) => {
             Err(ArgumentError::new_err(format!("{name} contains {number}; expected finite numbers")))
         }
-        None => Ok(vector),
+        None => Ok(()),
     }
 }
 

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use pyo3::prelude::*;
 
 use crate::arguments::{MOST, MOST_SAMPLES, positive, whole, wholes};
-use crate::arrays::matrix;
+use crate::arrays::{check_finite, matrix};
 use crate::errors::ArgumentError;
 
 /// Most components that the signal of a limit has.
@@ -35,12 +35,8 @@ fn samples_of(samples: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
 /// A matrix of finite numbers.
 fn finite(name: &str, value: &Bound<'_, PyAny>) -> PyResult<DMatrix<f64>> {
     let matrix = matrix(name, value)?;
-    match matrix.iter().find(|number| !number.is_finite()) {
-        Some(number) => {
-            Err(ArgumentError::new_err(format!("{name} contains {number}; expected finite numbers")))
-        }
-        None => Ok(matrix),
-    }
+    check_finite(name, matrix.as_slice())?;
+    Ok(matrix)
 }
 
 #[pymethods]

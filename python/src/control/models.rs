@@ -4,7 +4,7 @@ use lmpc::{Augmented, Discretization};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
-use crate::arguments::{number, number_or};
+use crate::arguments::{above_zero, number, number_or};
 use crate::arrays::{array2, matrix};
 use crate::errors::{self, ArgumentError};
 
@@ -110,9 +110,7 @@ impl StateSpace {
         if !(output >= 0.0 && output.is_finite()) {
             return Err(ArgumentError::new_err(format!("output = {output} is outside [0, ∞)")));
         }
-        if !(increment > 0.0 && increment.is_finite()) {
-            return Err(ArgumentError::new_err(format!("increment = {increment} is outside (0, ∞)")));
-        }
+        let increment = above_zero("increment", increment)?;
         let weights = lmpc::Weights::output(&Augmented::new(&self.0), output, increment)
             .map_err(|refusal| errors::design(&refusal))?;
         Ok((array2(python, weights.q())?, array2(python, weights.r())?))

@@ -17,7 +17,7 @@ use super::parameters;
 use super::saved::Saved;
 use super::simulation::{instants, room};
 use super::vehicle::{MOTION, Vehicle};
-use crate::arguments::whole;
+use crate::arguments::{shown, whole};
 use crate::arrays::{matrix, vector};
 use crate::errors::{ArgumentError, ParameterError};
 use crate::interruption::Interruption;
@@ -137,10 +137,6 @@ impl Fleet {
         };
         self.fleet.map(row).concat()
     }
-}
-
-fn vehicle_shown(value: &Bound<'_, PyAny>) -> String {
-    value.repr().map_or_else(|_| String::new(), |shown| shown.to_string())
 }
 
 /// Vehicles with these settings. Those that are alike are designed once.
@@ -353,7 +349,7 @@ impl Fleet {
     fn indices(&self, vehicles: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
         let last = self.fleet.len().saturating_sub(1);
         let items = vehicles.try_iter().map_err(|_| {
-            let shown = vehicle_shown(vehicles);
+            let shown = shown(vehicles);
             ArgumentError::new_err(format!(
                 "vehicles = {shown}; expected a list of whole numbers from 0 to {last}"
             ))
@@ -361,7 +357,7 @@ impl Fleet {
         let index = |item: PyResult<Bound<'_, PyAny>>| {
             let item = item?;
             item.extract::<usize>().ok().filter(|index| *index <= last).ok_or_else(|| {
-                let shown = vehicle_shown(&item);
+                let shown = shown(&item);
                 ArgumentError::new_err(format!("there is no vehicle {shown}; allowed are 0 to {last}"))
             })
         };

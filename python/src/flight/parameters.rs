@@ -5,6 +5,7 @@ use pyo3::types::PyDict;
 use quadrotor::{Access, Configuration, PARAMETERS, Parameter};
 
 use super::suggestion;
+use crate::arguments::shown;
 use crate::errors::ParameterError;
 
 /// The parameter of a name.
@@ -22,8 +23,7 @@ pub fn set(
     value: &Bound<'_, PyAny>,
 ) -> PyResult<()> {
     let wrong = |expected: &str| {
-        let shown = value.repr().map_or_else(|_| String::new(), |shown| shown.to_string());
-        ParameterError::new_err(format!("{} = {shown}; expected {expected}", parameter.name))
+        ParameterError::new_err(format!("{} = {}; expected {expected}", parameter.name, shown(value)))
     };
     match &parameter.access {
         Access::Real { set, .. } => {
