@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use quadrotor::{Configuration, GRAVITY_M_S2, Limits, Sensors, commanded_tilt_rad};
+use quadrotor::{Airframe, Configuration, GRAVITY_M_S2, Limits, Sensors, commanded_tilt_rad};
 
 use super::path::{Path, START_S, Shape};
 use super::plan::{Demand, Plan, Row};
@@ -60,7 +60,7 @@ const REVERSED_M_S: [f64; 3] = [2.0, 5.0, 7.5];
 pub const PATH_LAST_S: f64 = 20.0;
 /// Time on a path between its start and the part that counts, s.
 const PATH_SETTLING_S: f64 = 5.0;
-/// The force against a cruise, N.
+/// The force against a cruise of the paper's airframe, N.
 const HEADWIND_N: f64 = 1.0;
 /// Side forces as shares of the weight, with the limit of tilt, rad.
 const SIDE_FORCES: [(f64, f64); 2] = [(0.5, 0.6), (0.6, 0.7)];
@@ -109,11 +109,11 @@ fn plan(
 fn cruises(base: &Configuration) -> Vec<Plan> {
     let goal = Demand::Goal([300.0, 0.0, 0.0]);
     let calm = plan(Row::Cruise, "300 m, calm", base, goal, 60.0);
-    let against = Plan {
-        name: format!("300 m against {HEADWIND_N} N"),
-        force_n: [-HEADWIND_N, 0.0, 0.0],
-        ..calm.clone()
-    };
+    // The same share of the weight for each airframe, to a millinewton.
+    let share = base.airframe.weight_n() / Airframe::default().weight_n();
+    let force_n = (1e3 * HEADWIND_N * share).round() / 1e3;
+    let against =
+        Plan { name: format!("300 m against {force_n} N"), force_n: [-force_n, 0.0, 0.0], ..calm.clone() };
     vec![calm, against]
 }
 

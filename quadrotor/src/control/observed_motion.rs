@@ -1,7 +1,9 @@
 //! The motion that leads to a state, and the disturbance behind it.
 
-use lmpc::{DesignError, StateSpace};
-use nalgebra::{DMatrix, SMatrix, SVector};
+use alloc::vec; // used by dmatrix!
+
+use lmpc::{DesignError, Discretization, StateSpace};
+use nalgebra::{DMatrix, SMatrix, SVector, dmatrix};
 use serde::{Deserialize, Serialize};
 
 use crate::finite::are_finite;
@@ -15,29 +17,42 @@ pub(crate) struct MotionModel<const N: usize, const P: usize> {
     inverse: SMatrix<f64, N, N>,
     /// B.
     by_input: SMatrix<f64, N, P>,
-    /// E: what an acceleration of each output does in a sample, \[ΔT²/2 ΔT 0 …\].
+    /// E: what an acceleration of each output does in a sample, against its drag: without drag \[ΔT²/2 ΔT 0 …\].
     by_disturbance: SMatrix<f64, N, P>,
     sample_time_s: f64,
 }
 
 impl<const N: usize, const P: usize> MotionModel<N, P> {
+    /// Of a plant whose outputs have drags per mass, 1/s.
+    ///
     /// # Errors
-    /// [`DesignError::NotFinite`] when A cannot be inverted.
-    pub(crate) fn new(plant: &StateSpace, sample_time_s: f64) -> Result<Self, DesignError> {
+    /// [`DesignError::NotFinite`] when A cannot be inverted, [`DesignError::SampleTime`] unless the sample time is positive.
+    pub(crate) fn new(
+        plant: &StateSpace,
+        drag_1_s: &SVector<f64, P>,
+        sample_time_s: f64,
+    ) -> Result<Self, DesignError> {
         let fixed = |matrix: &DMatrix<f64>| SMatrix::from_fn(|row, column| matrix[(row, column)]);
         let inverse = plant.a().clone().try_inverse().ok_or(DesignError::NotFinite { name: "A⁻¹" })?;
+        let mut by_disturbance = SMatrix::zeros();
+        for channel in 0..P {
+            // Together with the acceleration of the model that stands against it, it must leave exactly nothing.
+            let body = StateSpace::from_continuous(
+                &dmatrix![0.0, 1.0; 0.0, -drag_1_s[channel]],
+                &dmatrix![0.0; 1.0],
+                &dmatrix![1.0, 0.0],
+                sample_time_s,
+                Discretization::ZeroOrderHold,
+            )?;
+            for (derivative, moved) in body.b().iter().enumerate() {
+                by_disturbance[(N / P * channel + derivative, channel)] = *moved;
+            }
+        }
         Ok(Self {
             transition: fixed(plant.a()),
             inverse: fixed(&inverse),
             by_input: SMatrix::from_fn(|row, column| plant.b()[(row, column)]),
-            by_disturbance: SMatrix::from_fn(|row, channel| {
-                let place = row.checked_sub(N / P * channel);
-                match place {
-                    Some(0) => sample_time_s * sample_time_s / 2.0,
-                    Some(1) => sample_time_s,
-                    _ => 0.0,
-                }
-            }),
+            by_disturbance,
             sample_time_s,
         })
     }

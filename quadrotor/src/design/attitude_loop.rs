@@ -69,14 +69,23 @@ impl AttitudeLoop {
         self.delay_s
     }
 
-    /// A double integrator over this loop, sampled every `sample_time_s`, in units of acceleration: states x, ẋ, ẍ, x⃛, the snap
-    /// that the rotors make, and the snap that they are asked for; input the commanded acceleration; output x.
+    /// A body with a drag per mass over this loop, sampled every `sample_time_s`, in units of acceleration: states x, ẋ, the
+    /// acceleration a by the thrust, its derivative, the one after it that the rotors make, and the one that they are asked for; input
+    /// the commanded a; output x.
+    ///
+    /// ```text
+    /// ẍ = a − drag ẋ
+    /// ```
     ///
     /// Between two samples the command is held and the attitude controller samples as often as it fits, rounded.
     ///
     /// # Errors
     /// [`DesignError::SampleTime`] unless the sample time is positive.
-    pub(crate) fn under_position(&self, sample_time_s: f64) -> Result<StateSpace, DesignError> {
+    pub(crate) fn under_position(
+        &self,
+        drag_1_s: f64,
+        sample_time_s: f64,
+    ) -> Result<StateSpace, DesignError> {
         const STATES: usize = 5;
         let samples = libm::round(sample_time_s / self.sample_time_s).max(1.0);
         let lag = 1.0 / self.rotor_lag_s;
@@ -84,6 +93,7 @@ impl AttitudeLoop {
         for derivative in 0..STATES - 1 {
             a[(derivative, derivative + 1)] = 1.0;
         }
+        a[(1, 1)] = -drag_1_s;
         a[(4, 4)] = -lag;
         let mut b = DMatrix::zeros(STATES, 1);
         b[(4, 0)] = lag;
@@ -144,7 +154,8 @@ mod tests {
         const FINE: usize = 2_000;
         let design = CascadeDesign::new(&Configuration::default()).expect("a design");
         let attitude = design.attitude_loop().expect("a loop");
-        let model = attitude.under_position(0.05).expect("a model");
+        let drag_1_s = 0.4;
+        let model = attitude.under_position(drag_1_s, 0.05).expect("a model");
         for excited in 0..7 {
             let mut state = DVector::zeros(6);
             let command = if excited == 6 { 1.0 } else { 0.0 };
@@ -162,10 +173,10 @@ mod tests {
                     // The midpoint rule.
                     let rate = |s: f64| (asked - s) / attitude.rotor_lag_s;
                     let half = step_s / 2.0;
-                    let [v_m, a_m, j_m] = [v + half * a, a + half * j, j + half * s];
+                    let [v_m, a_m, j_m] = [v + half * (a - drag_1_s * v), a + half * j, j + half * s];
                     let s_m = s + half * rate(s);
                     x += step_s * v_m;
-                    v += step_s * a_m;
+                    v += step_s * (a_m - drag_1_s * v_m);
                     a += step_s * j_m;
                     j += step_s * s_m;
                     s += step_s * rate(s_m);

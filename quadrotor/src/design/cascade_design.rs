@@ -76,7 +76,7 @@ impl CascadeDesign {
             altitude: altitude.0,
             position: position.0,
             attitude,
-            position_is_isotropic: is_isotropic(&configuration.controllers.position),
+            position_is_isotropic: is_isotropic(configuration),
             estimator: estimator_design(configuration)?,
             mixer,
             reports: [altitude.1, position.1, attitude_report],
@@ -115,7 +115,7 @@ impl CascadeDesign {
             self.estimator = designed;
         }
         self.mixer = mixer;
-        self.position_is_isotropic = is_isotropic(&configuration.controllers.position);
+        self.position_is_isotropic = is_isotropic(configuration);
         Ok(redesigned)
     }
 
@@ -152,8 +152,12 @@ impl Redesigned {
         Self {
             altitude: every
                 || before.altitude != after.altitude
-                || one.airframe.rotor_time_constant_s != other.airframe.rotor_time_constant_s,
-            position: every || before.position != after.position || !AttitudeDesign::is_same(one, other),
+                || one.airframe.rotor_time_constant_s != other.airframe.rotor_time_constant_s
+                || one.drag_1_s().z != other.drag_1_s().z,
+            position: every
+                || before.position != after.position
+                || one.drag_1_s().xy() != other.drag_1_s().xy()
+                || !AttitudeDesign::is_same(one, other),
             attitude: !AttitudeDesign::is_same(one, other),
             estimator: before.attitude.sample_time_us != after.attitude.sample_time_us
                 || one.sensors.position_noise_m != other.sensors.position_noise_m

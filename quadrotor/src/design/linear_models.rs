@@ -41,14 +41,24 @@ pub fn position_model(sample_time_s: f64, discretization: Discretization) -> Res
     double_integrators(&[-GRAVITY_M_S2, GRAVITY_M_S2], sample_time_s, discretization)
 }
 
-/// (9) with the rotors' lag: states z, v_z, z̈; input G; output z. z⃛ = (G − z̈)/τ.
+/// (9) with the rotors' lag τ and a drag per mass, 1/s: states z, v_z and a, the acceleration by the thrust and gravity; input G;
+/// output z.
+///
+/// ```text
+/// z̈ = a − drag v_z
+/// ȧ = (G − a)/τ
+/// ```
 ///
 /// # Errors
 /// [`DesignError::SampleTime`] unless the sample time is positive, [`DesignError::NotFinite`] for a time constant of 0.
-pub fn altitude_model_with_lag(time_constant_s: f64, sample_time_s: f64) -> Result<StateSpace, DesignError> {
-    let a = DMatrix::from_row_slice(3, 3, &[0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, -1.0 / time_constant_s]);
-    let b = DMatrix::from_column_slice(3, 1, &[0.0, 0.0, 1.0 / time_constant_s]);
-    let c = DMatrix::from_row_slice(1, 3, &[1.0, 0.0, 0.0]);
+pub fn altitude_model_with_lag(
+    time_constant_s: f64,
+    drag_1_s: f64,
+    sample_time_s: f64,
+) -> Result<StateSpace, DesignError> {
+    let a = dmatrix![0.0, 1.0, 0.0; 0.0, -drag_1_s, 1.0; 0.0, 0.0, -1.0 / time_constant_s];
+    let b = dmatrix![0.0; 0.0; 1.0 / time_constant_s];
+    let c = dmatrix![1.0, 0.0, 0.0];
     StateSpace::from_continuous(&a, &b, &c, sample_time_s, Discretization::ZeroOrderHold)
 }
 
@@ -99,7 +109,7 @@ pub fn lagged_attitude_model(
 
 #[cfg(test)]
 mod tests {
-    use super::lagged_attitude_model;
+    use super::{altitude_model_with_lag, lagged_attitude_model};
 
     /// α(t) = u (1 − e^(−t/T)), integrated once and twice; for T → 0 the double integrator.
     #[test]
@@ -119,5 +129,17 @@ mod tests {
         let prompt = lagged_attitude_model(1, 0.0, t).expect("a model");
         let soon = lagged_attitude_model(1, 1e-6, t).expect("a model");
         assert!((prompt.a() - soon.a()).amax() < 1e-6 && (prompt.b() - soon.b()).amax() < 1e-4);
+    }
+
+    /// v̇ = G (1 − e^(−t/τ)) − d v from rest: v(t) = (1 − e^(−d t))/d + (e^(−t/τ) − e^(−d t))/(1/τ − d) for G of 1.
+    #[test]
+    fn drag_slows_a_climb() {
+        let (t, drag, lag) = (0.5_f64, 0.8, 0.05);
+        let plant = altitude_model_with_lag(lag, drag, t).expect("a model");
+        let (coasting, answering) = ((-drag * t).exp(), (-t / lag).exp());
+        let speed = (1.0 - coasting) / drag + (answering - coasting) / (1.0 / lag - drag);
+        assert!((plant.b()[(1, 0)] - speed).abs() < 1e-12, "{} {speed}", plant.b());
+        assert!((plant.a()[(1, 1)] - coasting).abs() < 1e-12, "{}", plant.a());
+        assert!((plant.a()[(0, 1)] - (1.0 - coasting) / drag).abs() < 1e-12, "{}", plant.a());
     }
 }

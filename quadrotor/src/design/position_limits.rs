@@ -14,9 +14,9 @@ const COARSE_SIDES: usize = 8;
 pub(crate) const POSITION_BOUNDS: usize = 3 * SIDES + 2 * COARSE_SIDES;
 
 /// Samples of the tilt command for which the present thrust counts.
-static PRESENT_TILT: &[usize] = &[0, 1, 2];
+static PRESENT_TILT: &[usize] = &[0, 1, 2, 3, 4];
 /// The later ones: those at which it can be chosen, and some of those at which it settles.
-static TILT: &[usize] = &[3, 4, 6, 8, 12, 18, 28];
+static TILT: &[usize] = &[6, 8, 12, 18, 28];
 /// Samples of the speed, which follows later.
 static MOVING: &[usize] = &[4, 7, 10, 13, 16, 20, 26, 34, 50, 80];
 /// Samples of the rate of the tilt: while commands change fast.

@@ -1,7 +1,7 @@
 //! The position and altitude controllers, designed from a configuration.
 
 use lmpc::{DesignError, Discretization, StateSpace};
-use nalgebra::{DMatrix, SVector};
+use nalgebra::{DMatrix, SVector, Vector1, Vector2};
 
 use crate::control::observed_motion::MotionModel;
 use crate::control::tracking_law::TrackingLaw;
@@ -14,7 +14,7 @@ use crate::design::loop_problem::LoopProblem;
 use crate::design::position_limits::{POSITION_STATES, position_limits};
 use crate::design::printed_design::printed_design;
 use crate::design::stabilized_law::StabilizedLaw;
-use crate::{Configuration, ConfigurationError, ControllerKind, ControllerSettings, PredictionModel};
+use crate::{Configuration, ConfigurationError, ControllerKind, PredictionModel};
 
 /// Bandwidth of position times the delay of the attitude and of the sampling.
 const DELAY_SHARE: f64 = 0.62;
@@ -40,10 +40,10 @@ pub(crate) type PositionDesign = TranslationDesign<POSITION_STATES, 2, POSITION_
 /// The model of Laguerre MPC, whose kicks limits cut off.
 fn by_motion<const N: usize, const P: usize>(
     kind: ControllerKind,
-    model: &StateSpace,
+    (model, drag_1_s): (&StateSpace, &SVector<f64, P>),
     sample_time_s: f64,
 ) -> Result<Option<MotionModel<N, P>>, DesignError> {
-    (kind == ControllerKind::Lmpc).then(|| MotionModel::new(model, sample_time_s)).transpose()
+    (kind == ControllerKind::Lmpc).then(|| MotionModel::new(model, drag_1_s, sample_time_s)).transpose()
 }
 
 /// The altitude controller and the figures of its design.
@@ -57,7 +57,11 @@ pub(crate) fn altitude_design(
         PredictionModel::InnerLoops => {
             let problem = altitude_problem(configuration)?;
             let (law, report) = StabilizedLaw::new(controllers.kind, &problem)?.law_and_report();
-            let motion = by_motion(controllers.kind, problem.model().plant(), sample_time_s)?;
+            let motion = by_motion(
+                controllers.kind,
+                (problem.model().plant(), &Vector1::new(configuration.drag_1_s().z)),
+                sample_time_s,
+            )?;
             Ok((TranslationDesign { law, motion }, report))
         }
         PredictionModel::Paper => {
@@ -82,7 +86,11 @@ pub(crate) fn position_design(
         Some(attitude) => {
             let problem = position_problem(configuration, &attitude)?;
             let (law, report) = StabilizedLaw::new(controllers.kind, &problem)?.law_and_report();
-            let motion = by_motion(controllers.kind, problem.model().plant(), sample_time_s)?;
+            let motion = by_motion(
+                controllers.kind,
+                (problem.model().plant(), &configuration.drag_1_s().xy()),
+                sample_time_s,
+            )?;
             Ok((TranslationDesign { law, motion }, report))
         }
         None => {
@@ -100,7 +108,7 @@ pub(crate) fn position_design(
 pub(crate) fn altitude_problem(configuration: &Configuration) -> Result<LoopProblem<1>, DesignError> {
     let settings = &configuration.controllers.altitude;
     let lag_s = configuration.airframe.rotor_time_constant_s;
-    let model = altitude_model_with_lag(lag_s, settings.sample_time_s())?;
+    let model = altitude_model_with_lag(lag_s, configuration.drag_1_s().z, settings.sample_time_s())?;
     let bandwidth = [ALTITUDE_RAD_S].into();
     Ok(LoopProblem::new(settings, &bandwidth, altitude_limits(settings.sample_time_s()), SIGHT_M, &model)?
         .planned_about(ALTITUDE_STABILIZING_SHARE))
@@ -112,16 +120,18 @@ pub(crate) fn position_problem(
     attitude: &AttitudeLoop,
 ) -> Result<LoopProblem<2>, DesignError> {
     let settings = &configuration.controllers.position;
-    let model = over_attitude(attitude, settings.sample_time_s())?;
+    let model = over_attitude(attitude, &configuration.drag_1_s().xy(), settings.sample_time_s())?;
     let bandwidth = [position_bandwidth_rad_s(configuration, Some(attitude)); 2].into();
     Ok(LoopProblem::new(settings, &bandwidth, position_limits(settings.sample_time_s()), SIGHT_M, &model)?
         .planned_about(POSITION_STABILIZING_SHARE))
 }
 
-/// Whether all weights are the same in both directions.
-pub(crate) fn is_isotropic(settings: &ControllerSettings<2>) -> bool {
+/// Whether weights and drag are the same in both directions.
+pub(crate) fn is_isotropic(configuration: &Configuration) -> bool {
+    let settings = &configuration.controllers.position;
     let same = |weights: &SVector<f64, 2>| weights[0] == weights[1];
-    same(&settings.output_weight)
+    same(&configuration.drag_1_s().xy())
+        && same(&settings.output_weight)
         && same(&settings.damping_weight)
         && same(&settings.rate_weight)
         && same(&settings.increment_weight)
@@ -135,11 +145,22 @@ const POSITION_STABILIZING_SHARE: f64 = 0.45;
 /// Error of the output, m, the cost of which stands for that of a violated limit.
 pub(crate) const SIGHT_M: f64 = 20.0;
 
-/// Both directions over the closed attitude loop.
-pub(crate) fn over_attitude(attitude: &AttitudeLoop, sample_time_s: f64) -> Result<StateSpace, DesignError> {
-    let axis = attitude.under_position(sample_time_s)?;
-    let both = |block: &DMatrix<f64>| DMatrix::<f64>::identity(2, 2).kronecker(block);
-    StateSpace::new(both(axis.a()), both(axis.b()), both(axis.c()))
+/// Both directions over the closed attitude loop, with their drag per mass, 1/s.
+pub(crate) fn over_attitude(
+    attitude: &AttitudeLoop,
+    drag_1_s: &Vector2<f64>,
+    sample_time_s: f64,
+) -> Result<StateSpace, DesignError> {
+    let north = attitude.under_position(drag_1_s.x, sample_time_s)?;
+    let east = attitude.under_position(drag_1_s.y, sample_time_s)?;
+    let both = |block: fn(&StateSpace) -> &DMatrix<f64>| {
+        let size = block(&north).shape();
+        let mut both = DMatrix::zeros(2 * size.0, 2 * size.1);
+        both.view_mut((0, 0), size).copy_from(block(&north));
+        both.view_mut(size, size).copy_from(block(&east));
+        both
+    };
+    StateSpace::new(both(StateSpace::a), both(StateSpace::b), both(StateSpace::c))
 }
 
 /// At which the position loop closes with weights of 1, rad/s, over a closed attitude loop or with the models as printed.
