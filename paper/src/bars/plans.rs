@@ -36,7 +36,7 @@ const STEEP_PATHS: [(Shape, f64, f64); 5] = [
     (Shape::FigureEight, 1.0, 3.3),
     (Shape::Circle, 8.0, 1.6),
 ];
-/// Paths beyond the default limits: the first by 1°.
+/// Paths beyond the default limits, and the first within them by 2°.
 const FAST_PATHS: [(Shape, f64, f64); 6] = [
     (Shape::FigureEight, 6.0, 0.7),
     (Shape::FigureEight, 6.0, 0.85),

@@ -9,6 +9,7 @@ use crate::control::attitude_controller::AttitudeController;
 use crate::control::attitude_reference::{AttitudeReference, SmoothedAcceleration};
 use crate::control::flat_attitude::FlatAttitude;
 use crate::control::followed_way::FollowedWay;
+use crate::control::largest_lean::LargestLean;
 use crate::control::mass_belief::MassBelief;
 use crate::control::narrowed_way::NarrowedWay;
 use crate::control::observation::Observation;
@@ -19,16 +20,18 @@ use crate::control::thrust_lag::ThrustLag;
 use crate::control::turned_way::{ForetoldWay, TurnedWay};
 use crate::control::unseen_motion::UnseenMotion;
 use crate::design::controller_limits::{
-    COMMANDED_TILT_SHARE, holding_horizontal_m_s2, least_thrust_n, thrust_range_n,
+    holding_horizontal_m_s2, least_thrust_n, reference_tilt_rad, thrust_range_n,
 };
 use crate::design::loop_design::LoopDesign;
 use crate::guidance::heading::Heading;
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{
     AttitudeTarget, CascadeDesign, Configuration, GRAVITY_M_S2, PositionReference, RigidBody, Wrench,
-    wrench_of_rotors,
+    commanded_tilt_rad, wrench_of_rotors,
 };
 
+/// How soon a lean that a reference is about to take counts as its present one, s: the samples under the present limit.
+const SOON_S: f64 = 0.2;
 /// Smallest cosine of the tilt by which the thrust is raised to hold the altitude (about 73°). Beyond it
 /// the thrust is the weight: it pushes sideways or down, but leaves the rotors room for torques.
 const UPRIGHT: f64 = 0.3;
@@ -174,8 +177,9 @@ impl Cascade {
     ) {
         let period_us = configuration.controllers.position.sample_time_us;
         let vertical = self.acceleration_m_s2().z;
+        let lean_rad = self.reference_lean_rad(configuration);
         let motion = |reference: &PositionReference, interval_s: f64| {
-            let required = RequiredThrust::of(configuration, reference);
+            let required = RequiredThrust::of(configuration, reference, lean_rad);
             ReferenceMotion {
                 position: reference.position_m.xy(),
                 velocity: reference.velocity_m_s.xy(),
@@ -191,26 +195,23 @@ impl Cascade {
         let at = |sample: usize| time_us + sample as u64 * period_us;
         let later = |sample: usize| motion(&ahead(at(sample)), 0.0);
         let asked = |sample: usize| asked(at(sample)).map(|reference| motion(&reference, 0.0));
-        let tilt_rad = configuration.limits.tilt_rad;
         // The thrust of a climb that begins does not last, and one that is under way will be braked.
         let (_, down) = vertical_range(configuration, upright(&seen.body));
         let lightest = vertical.max(braking_m_s2(seen, reference).min(down));
         let holding = holding_horizontal_m_s2(configuration, seen.vertical().disturbance_m_s2);
-        let present = most_horizontal(vertical, tilt_rad).min(holding);
+        let largest = |vertical| self.largest_lean(configuration, vertical).within(holding);
+        let soon = now.thrust + now.thrust_jerk * SOON_S;
+        let present = largest(vertical).beside(now.thrust.norm().max(soon.norm()));
+        let lasting = largest(lightest);
         let mut seen = seen.horizontal(configuration, &self.attitude.feedback_rad_s2());
         if !now.is_at_rest() {
-            let required = RequiredThrust::of(configuration, reference);
+            let required = RequiredThrust::of(configuration, reference, lean_rad);
             let unseen = UnseenMotion::on(&required, &Heading::of(reference), configuration);
             seen.jerk_m_s3 += unseen.jerk_m_s3;
             seen.snap_m_s4 += unseen.snap_m_s4;
         }
-        let (applied, activity) = self.position.step(
-            configuration,
-            design,
-            &seen,
-            (&now, later, asked),
-            (present, most_horizontal(lightest, tilt_rad).min(holding)),
-        );
+        let (applied, activity) =
+            self.position.step(configuration, design, &seen, (&now, later, asked), (present, lasting));
         let feedback = applied - now.thrust;
         (self.feedback_m_s2.x, self.feedback_m_s2.y) = (feedback.x, feedback.y);
         self.activity.position = activity;
@@ -227,7 +228,7 @@ impl Cascade {
     ) {
         let period_us = configuration.controllers.altitude.sample_time_us;
         let axis = |vector: &Vector3<f64>| [vector.z].into();
-        let required = RequiredThrust::of(configuration, reference);
+        let required = RequiredThrust::of(configuration, reference, self.reference_lean_rad(configuration));
         let motion = ReferenceMotion {
             position: axis(&reference.position_m),
             velocity: axis(&reference.velocity_m_s),
@@ -253,14 +254,14 @@ impl Cascade {
         seen: &Observation,
         (reference, answered): (&PositionReference, &PositionReference),
     ) -> RotorCommand {
+        let lean_rad = self.reference_lean_rad(configuration);
         let [required, later] =
-            [reference, answered].map(|reference| RequiredThrust::of(configuration, reference));
+            [reference, answered].map(|reference| RequiredThrust::of(configuration, reference, lean_rad));
         self.reference_m_s2 = required.acceleration_m_s2;
         let vertical = later.acceleration_m_s2.z + self.feedback_m_s2.z;
         let upright = upright(&seen.body);
-        let tilt_rad = configuration.limits.tilt_rad;
-        let attitude = self.required_attitude(&required, &Heading::of(reference), upright, tilt_rad);
-        let later = self.required_attitude(&later, &Heading::of(answered), upright, tilt_rad);
+        let attitude = self.required_attitude(configuration, &required, &Heading::of(reference), upright);
+        let later = self.required_attitude(configuration, &later, &Heading::of(answered), upright);
         self.tilt_reference_rad = [attitude.roll_rad, attitude.pitch_rad];
         let lag_s = configuration.airframe.rotor_time_constant_s;
         let change = attitude.attitude.inverse() * later.attitude * later.angular_acceleration_rad_s2
@@ -278,15 +279,33 @@ impl Cascade {
         self.command_rotors(configuration, design, seen, &required, thrust_n)
     }
 
-    /// The attitude and its motion that a reference requires together with what feedback adds to it, leaning by at most
-    /// `tilt_rad`. While the thrust pushes sideways or down it is level: where the thrust should push cannot be followed, and a
+    /// The largest lean of a reference that is followed as it is, rad. A way in place of one that leans farther keeps to what is
+    /// commanded at most.
+    fn reference_lean_rad(&self, configuration: &Configuration) -> f64 {
+        if self.followed.gives_way() {
+            commanded_tilt_rad(configuration)
+        } else {
+            reference_tilt_rad(configuration)
+        }
+    }
+
+    /// How far commands may lean under a vertical acceleration, m/s².
+    fn largest_lean(&self, configuration: &Configuration, vertical_m_s2: f64) -> LargestLean {
+        LargestLean {
+            commanded_m_s2: most_horizontal(vertical_m_s2, commanded_tilt_rad(configuration)),
+            foretold_m_s2: most_horizontal(vertical_m_s2, self.reference_lean_rad(configuration)),
+        }
+    }
+
+    /// The attitude and its motion that a reference requires together with what feedback adds to it, within the largest
+    /// lean. While the thrust pushes sideways or down it is level: where the thrust should push cannot be followed, and a
     /// way upright that bends with it takes longer.
     fn required_attitude(
         &self,
+        configuration: &Configuration,
         required: &RequiredThrust,
         heading: &Heading,
         upright: f64,
-        tilt_rad: f64,
     ) -> FlatAttitude {
         if upright < UPRIGHT {
             let none = Vector3::zeros();
@@ -294,8 +313,10 @@ impl Cascade {
         }
         let wanted_m_s2 = required.acceleration_m_s2 + self.feedback_m_s2;
         // Commands that are cut off turn with the reference.
-        let within = RequiredThrust { acceleration_m_s2: wanted_m_s2, ..*required }
-            .leaning_at_most(|| most_horizontal(wanted_m_s2.z, tilt_rad));
+        let within = RequiredThrust { acceleration_m_s2: wanted_m_s2, ..*required }.leaning_at_most(|| {
+            let required_m_s2 = required.acceleration_m_s2.xy().norm();
+            self.largest_lean(configuration, wanted_m_s2.z).beside(required_m_s2)
+        });
         FlatAttitude::new(&within.acceleration_m_s2, &within.jerk_m_s3, &within.snap_m_s4, heading)
     }
 
@@ -377,10 +398,10 @@ fn braking_m_s2(seen: &Observation, reference: &PositionReference) -> f64 {
     climb_m_s * climb_m_s / way_m.max(NEAR_M)
 }
 
-/// The largest horizontal acceleration, m/s², with which commands keep the thrust axis within `tilt_rad` when the vertical
-/// acceleration is `vertical_m_s2`: |a| ≤ tan(0.91 tilt) (g − G).
-pub(crate) fn most_horizontal(vertical_m_s2: f64, tilt_rad: f64) -> f64 {
-    libm::tan(COMMANDED_TILT_SHARE * tilt_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0)
+/// The largest horizontal acceleration, m/s², under which the thrust leans by at most `lean_rad` when the vertical acceleration
+/// is `vertical_m_s2`: |a| ≤ tan(lean) (g − G).
+pub(crate) fn most_horizontal(vertical_m_s2: f64, lean_rad: f64) -> f64 {
+    libm::tan(lean_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0)
 }
 
 /// Vertical accelerations G, m/s², that the thrust limits allow at this tilt: G = g − F cos(tilt)/m.

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::control::required_thrust::RequiredThrust;
-use crate::{Configuration, PositionReference, RigidBody};
+use crate::{Configuration, PositionReference, RigidBody, commanded_tilt_rad};
 
 /// Natural frequency, rad/s, with which the way comes back to its reference, and its damping. Faster, it would pull against a
 /// reference that keeps turning, and end up in its opposite phase; slower, it would forget where the reference is.
@@ -47,6 +47,11 @@ struct Offset {
 }
 
 impl FollowedWay {
+    /// Whether it stands in for its reference.
+    pub(crate) fn gives_way(&self) -> bool {
+        self.offset.is_some()
+    }
+
     /// Goes on to a reference at a time, µs. What is followed then, unless it is the reference itself.
     pub(crate) fn follow(
         &mut self,
@@ -115,6 +120,7 @@ impl Offset {
         let drag_1_s = configuration.drag_1_s();
         let drag = |motion: &Vector3<f64>| drag_1_s.component_mul(motion);
         let velocity = reference.velocity_m_s + self.velocity_m_s;
+        let lean_rad = commanded_tilt_rad(configuration);
         // What is wanted of each derivative depends on what the limits leave of the one before.
         let mut wanted = RequiredThrust {
             acceleration_m_s2: reference.acceleration_m_s2
@@ -124,14 +130,14 @@ impl Offset {
             jerk_m_s3: Vector3::zeros(),
             snap_m_s4: Vector3::zeros(),
         };
-        let acceleration = wanted.within_lean(configuration).acceleration_m_s2 - drag(&velocity);
+        let acceleration = wanted.within_lean(configuration, lean_rad).acceleration_m_s2 - drag(&velocity);
         let change = acceleration - reference.acceleration_m_s2;
         wanted.jerk_m_s3 =
             reference.jerk_m_s3 - change * SLOWER - self.velocity_m_s * BACK + drag(&acceleration);
-        let jerk = wanted.within_lean(configuration).jerk_m_s3 - drag(&acceleration);
+        let jerk = wanted.within_lean(configuration, lean_rad).jerk_m_s3 - drag(&acceleration);
         wanted.snap_m_s4 =
             reference.snap_m_s4 - (jerk - reference.jerk_m_s3) * SLOWER - change * BACK + drag(&jerk);
-        let snap = wanted.within_lean(configuration).snap_m_s4 - drag(&jerk);
+        let snap = wanted.within_lean(configuration, lean_rad).snap_m_s4 - drag(&jerk);
         PositionReference {
             position_m: reference.position_m + self.position_m,
             velocity_m_s: velocity,

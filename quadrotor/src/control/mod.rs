@@ -15,6 +15,7 @@ pub(crate) mod flat_attitude;
 pub(crate) mod followed_way;
 pub(crate) mod governor;
 pub(crate) mod instants;
+mod largest_lean;
 mod largest_share;
 mod learning;
 pub(crate) mod mass_belief;

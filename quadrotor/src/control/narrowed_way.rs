@@ -4,7 +4,7 @@ use nalgebra::{Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::control::required_thrust::RequiredThrust;
-use crate::{Configuration, GRAVITY_M_S2, PositionReference};
+use crate::{Configuration, GRAVITY_M_S2, PositionReference, commanded_tilt_rad};
 
 /// How many times the limits of lean, tilt rate and tilt acceleration are followed as they are asked for: feedback and
 /// [`FollowedWay`](crate::control::followed_way::FollowedWay) do with peaks.
@@ -89,7 +89,8 @@ impl NarrowedWay {
 fn asked(configuration: &Configuration, available_rad_s2: f64, reference: &PositionReference) -> f64 {
     let whole = RequiredThrust::whole(configuration, reference);
     let limits = &configuration.limits;
-    let lean_m_s2 = FOLLOWED * whole.most_horizontal_m_s2(configuration).max(1e-3);
+    let lean_m_s2 =
+        FOLLOWED * whole.most_horizontal_m_s2(configuration, commanded_tilt_rad(configuration)).max(1e-3);
     let rate_rad_s = FOLLOWED * limits.tilt_rate_rad_s;
     let acceleration_rad_s2 =
         (FOLLOWED * limits.tilt_acceleration_rad_s2).min(OF_AVAILABLE * available_rad_s2);

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::control::activity::ControllerActivity;
 use crate::control::governor::{Governor, integral_rate};
+use crate::control::largest_lean::LargestLean;
 use crate::control::observed_motion::{MotionSample, ObservedMotion};
 use crate::control::thrown::Thrown;
 use crate::control::vehicle_motion::HorizontalMotion;
@@ -57,7 +58,7 @@ impl PositionController {
     }
 
     /// One sample: horizontal acceleration in NED, m/s², and how it was found. `present_m_s2` is the largest one now and
-    /// `most_m_s2` later on.
+    /// `lasting` later on.
     pub(crate) fn step(
         &mut self,
         configuration: &Configuration,
@@ -68,7 +69,7 @@ impl PositionController {
             impl Fn(usize) -> ReferenceMotion<2>,
             impl Fn(usize) -> Option<ReferenceMotion<2>>,
         ),
-        (present_m_s2, most_m_s2): (f64, f64),
+        (present_m_s2, lasting): (f64, LargestLean),
     ) -> (Vector2<f64>, ControllerActivity) {
         let law = &design.position.law;
         let zero = Vector2::zeros();
@@ -83,7 +84,7 @@ impl PositionController {
             seen.snap_m_s4 + turning,
             seen.asked_snap_m_s4 + turning,
         ]);
-        let error = planned_error_m(configuration, law.regulator(), seen, reference, most_m_s2);
+        let error = planned_error_m(configuration, law.regulator(), seen, reference, lasting.commanded_m_s2);
         // The loop is the same in all horizontal directions. Along the error, no corner of a polygon of limits is nearer to the goal
         // than the way to it.
         let turn = Turn::along(&error, design.position_is_isotropic);
@@ -109,7 +110,12 @@ impl PositionController {
             error: turn.vector(&error),
             input_reference: turn.vector(&reference.thrust),
             disturbance: turn.vector(&seen.disturbance_m_s2),
-            upper: &position_bounds(&configuration.limits, (present_m_s2, most_m_s2), &asked, under_way),
+            upper: &position_bounds(
+                &configuration.limits,
+                (present_m_s2, lasting.beside(asked.thrust_m_s2)),
+                &asked,
+                under_way,
+            ),
             moved: moved.as_ref().map_or(&[], MovedSignals::values),
             ..Sample::default()
         };
@@ -224,6 +230,7 @@ fn state_of(reference: &ReferenceMotion<2>) -> SVector<f64, POSITION_STATES> {
 /// What a reference asks for, as far as it is more than what it asks for at other times.
 fn asked_by(asked: &Asked, reference: &ReferenceMotion<2>) -> Asked {
     Asked {
+        thrust_m_s2: asked.thrust_m_s2.max(reference.thrust.norm()),
         speed_m_s: asked.speed_m_s.max(reference.velocity.norm()),
         jerk_m_s3: asked.jerk_m_s3.max(reference.thrust_jerk.norm()),
         snap_m_s4: asked.snap_m_s4.max(reference.thrust_snap.norm()),

@@ -3,7 +3,7 @@
 use nalgebra::{Vector2, Vector3};
 
 use crate::control::cascade::most_horizontal;
-use crate::design::controller_limits::holding_horizontal_m_s2;
+use crate::design::controller_limits::{holding_horizontal_m_s2, reference_tilt_rad};
 use crate::{Configuration, PositionReference};
 
 /// A horizontal acceleration of less, m/s², has no direction: what it turns with would have no bounds.
@@ -23,16 +23,19 @@ pub(crate) struct RequiredThrust {
 }
 
 impl RequiredThrust {
-    /// Of a reference: a + D v and its derivatives, shortened to the largest lean.
-    pub(crate) fn of(configuration: &Configuration, reference: &PositionReference) -> Self {
-        Self::whole(configuration, reference).within_lean(configuration)
+    /// Of a reference: a + D v and its derivatives, shortened to a largest lean, rad.
+    pub(crate) fn of(configuration: &Configuration, reference: &PositionReference, lean_rad: f64) -> Self {
+        Self::whole(configuration, reference).within_lean(configuration, lean_rad)
     }
 
-    /// Whether a reference leans farther than the largest lean.
+    /// Whether a reference leans farther than can be followed.
     pub(crate) fn is_beyond_lean(configuration: &Configuration, reference: &PositionReference) -> bool {
         let whole = Self::whole(configuration, reference);
         let horizontal_m_s2 = whole.acceleration_m_s2.xy().norm();
-        horizontal_m_s2 > NOTHING_M_S2 && horizontal_m_s2 > whole.most_horizontal_m_s2(configuration)
+        horizontal_m_s2 > NOTHING_M_S2 && {
+            let lean_rad = reference_tilt_rad(configuration);
+            horizontal_m_s2 > whole.most_horizontal_m_s2(configuration, lean_rad)
+        }
     }
 
     /// a + D v and its derivatives.
@@ -46,16 +49,15 @@ impl RequiredThrust {
         }
     }
 
-    /// Shortened to the largest lean.
-    pub(crate) fn within_lean(&self, configuration: &Configuration) -> Self {
-        self.leaning_at_most(|| self.most_horizontal_m_s2(configuration))
+    /// Shortened to a largest lean, rad.
+    pub(crate) fn within_lean(&self, configuration: &Configuration, lean_rad: f64) -> Self {
+        self.leaning_at_most(|| self.most_horizontal_m_s2(configuration, lean_rad))
     }
 
-    /// The largest horizontal acceleration beside the vertical one, m/s².
-    pub(crate) fn most_horizontal_m_s2(&self, configuration: &Configuration) -> f64 {
+    /// The largest horizontal acceleration beside the vertical one, under a lean in rad, m/s².
+    pub(crate) fn most_horizontal_m_s2(&self, configuration: &Configuration, lean_rad: f64) -> f64 {
         let vertical_m_s2 = self.acceleration_m_s2.z;
-        most_horizontal(vertical_m_s2, configuration.limits.tilt_rad)
-            .min(holding_horizontal_m_s2(configuration, -vertical_m_s2))
+        most_horizontal(vertical_m_s2, lean_rad).min(holding_horizontal_m_s2(configuration, -vertical_m_s2))
     }
 
     /// The same with a horizontal acceleration of at most `most_m_s2`, which is only asked for if there is one:
@@ -101,7 +103,7 @@ pub(crate) mod tests {
 
     use super::RequiredThrust;
     use crate::guidance::known_motion::motion;
-    use crate::{Configuration, PositionReference};
+    use crate::{Configuration, PositionReference, commanded_tilt_rad};
 
     /// A spiral whose acceleration grows and turns, with its derivatives by the product rule in the complex plane: b e^{ct}.
     fn spiral(time_s: f64) -> PositionReference {
@@ -124,7 +126,8 @@ pub(crate) mod tests {
     #[test]
     fn each_part_is_the_derivative_of_the_one_before() {
         const H: f64 = 1e-4;
-        let of = |time_s: f64| RequiredThrust::of(&dragged(), &spiral(time_s));
+        let of =
+            |time_s: f64| RequiredThrust::of(&dragged(), &spiral(time_s), commanded_tilt_rad(&dragged()));
         for time_s in [-5.0, -4.0, 0.0, 1.0] {
             let [before, now, after] = [of(time_s - H), of(time_s), of(time_s + H)];
             let slope =
@@ -139,12 +142,13 @@ pub(crate) mod tests {
     #[test]
     fn what_cannot_be_leant_is_shortened() {
         let configuration = dragged();
-        let largest = libm::tan(0.91 * configuration.limits.tilt_rad) * crate::GRAVITY_M_S2;
+        let lean_rad = 0.5;
+        let largest = libm::tan(lean_rad) * crate::GRAVITY_M_S2;
         for (time_s, whole) in [(-5.0, true), (0.0, false)] {
             let reference = spiral(time_s);
             let drag = Vector3::new(0.4, 0.25, 0.1).component_mul(&reference.velocity_m_s);
             let asked = reference.acceleration_m_s2 + drag / configuration.airframe.mass_kg;
-            let required = RequiredThrust::of(&configuration, &reference).acceleration_m_s2;
+            let required = RequiredThrust::of(&configuration, &reference, lean_rad).acceleration_m_s2;
             let expected = if whole { asked } else { asked * (largest / asked.norm()) };
             assert_eq!(asked.norm() < largest, whole);
             assert!((required - expected).norm() < 1e-9, "{required} {expected}");

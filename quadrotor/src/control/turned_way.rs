@@ -10,7 +10,7 @@ use crate::design::attitude_loop::AttitudeLoop;
 use crate::design::position_limits::{horizon_m, in_sight};
 use crate::guidance::eased_limits::EasedLimits;
 use crate::guidance::reference_guidance::Guidance;
-use crate::{Configuration, GRAVITY_M_S2, Limits, PositionReference};
+use crate::{Configuration, GRAVITY_M_S2, Limits, PositionReference, commanded_tilt_rad};
 
 /// How long the tilt may take from one lean to the opposite one, s, for goals to be followed themselves. Plans turn the tilt within its
 /// limits for a second, and take it for free to turn after that; default limits take less.
@@ -97,7 +97,7 @@ impl ForetoldWay {
             acceleration_m_s2: level(&acceleration),
             ..PositionReference::goal([motion.position_m.x, motion.position_m.y, 0.0], 0.0)
         };
-        let most_m_s2 = most_horizontal(0.0, configuration.limits.tilt_rad);
+        let most_m_s2 = most_horizontal(0.0, commanded_tilt_rad(configuration));
         let lean_share = (LEAN_SHARE - motion.disturbance_m_s2.norm() / most_m_s2).max(LEAST_SHARE);
         let limits = EasedLimits::new(&turned_limits(configuration, lean_share));
         let times = configuration.response_times();
@@ -125,7 +125,7 @@ fn asked(configuration: &Configuration, attitude: Option<&AttitudeLoop>, error_m
         return 0.0;
     }
     let bandwidth_rad_s = position_bandwidth_rad_s(configuration, attitude);
-    let most_m_s2 = most_horizontal(0.0, limits.tilt_rad);
+    let most_m_s2 = most_horizontal(0.0, commanded_tilt_rad(configuration));
     let planned_m = in_sight(error_m, horizon_m(limits.speed_horizontal_m_s, most_m_s2)).norm();
     let jerk_m_s3 = planned_m * bandwidth_rad_s * bandwidth_rad_s * bandwidth_rad_s;
     let rate = jerk_m_s3 / limits.tilt_rate_rad_s;
@@ -145,7 +145,7 @@ fn swing_s(limits: &Limits) -> f64 {
 /// together are shortest with j = √(a g α/2).
 fn turned_limits(configuration: &Configuration, lean_share: f64) -> Limits {
     let limits = &configuration.limits;
-    let acceleration_m_s2 = lean_share * most_horizontal(0.0, limits.tilt_rad);
+    let acceleration_m_s2 = lean_share * most_horizontal(0.0, commanded_tilt_rad(configuration));
     let turning_m_s4 = GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
     let soonest_m_s3 = libm::sqrt(acceleration_m_s2 * turning_m_s4 / 2.0);
     Limits {

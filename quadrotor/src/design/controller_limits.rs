@@ -8,6 +8,13 @@ pub(crate) const USABLE_THRUST_SHARE: f64 = 0.8;
 /// Share of the tilt limit that is commanded. The attitude overshoots its command by up to 9 % in random raw steps that begin with a
 /// descent: at its least thrust a vehicle has less torque.
 pub(crate) const COMMANDED_TILT_SHARE: f64 = 0.91;
+/// Share of the tilt limit up to which a reference may lean itself: a lean that is foretold with its derivatives is not overshot.
+const REFERENCE_TILT_SHARE: f64 = 0.96;
+
+/// Largest tilt of a reference that is followed as it is, rad.
+pub(crate) fn reference_tilt_rad(configuration: &Configuration) -> f64 {
+    REFERENCE_TILT_SHARE * configuration.limits.tilt_rad
+}
 
 /// Thrust, N, that an attitude target keeps whatever its torques need: what holds the altitude at a tilt of the given cosine, as
 /// far as the altitude controller may use it.

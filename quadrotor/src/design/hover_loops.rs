@@ -13,7 +13,7 @@ use crate::design::controller_limits::least_thrust_n;
 use crate::design::loop_problem::LoopProblem;
 use crate::design::position_limits::{Asked, TurnUnderWay, horizon_m, position_bounds};
 use crate::design::translation_design::{altitude_problem, position_problem};
-use crate::{Configuration, ConfigurationError, Mixer};
+use crate::{Configuration, ConfigurationError, Mixer, commanded_tilt_rad};
 
 /// A loop under the limits that it has in hover.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,7 +67,7 @@ impl HoverLoops {
             inertia_kg_m2: configuration.believed_inertia_kg_m2(),
             believed: configuration.controllers.mass_factor,
         };
-        let tilted_m_s2 = most_horizontal(0.0, limits.tilt_rad);
+        let tilted_m_s2 = most_horizontal(0.0, commanded_tilt_rad(configuration));
         let range = vertical_range(configuration, 1.0);
         let fastest_m_s = limits.speed_up_m_s.max(limits.speed_down_m_s);
         Ok(Self {

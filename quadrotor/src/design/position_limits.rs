@@ -85,6 +85,8 @@ pub(crate) struct TurnUnderWay {
 /// that its own motion breaks would take the feedback the room to follow it.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct Asked {
+    /// Acceleration by the thrust, m/s².
+    pub(crate) thrust_m_s2: f64,
     /// Speed, m/s.
     pub(crate) speed_m_s: f64,
     /// Jerk, m/s³.

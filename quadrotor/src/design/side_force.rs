@@ -3,8 +3,8 @@
 use crate::Configuration;
 use crate::design::controller_limits::{COMMANDED_TILT_SHARE, thrust_range_n};
 
-/// Largest tilt that the position controller commands, rad: 0.91 of the tilt limit. The rest is room for the attitude
-/// to overshoot its command.
+/// Largest tilt that the position controller commands, rad, beside a reference that does not lean farther itself: 0.91 of the tilt
+/// limit. The rest is room for the attitude to overshoot its command.
 pub fn commanded_tilt_rad(configuration: &Configuration) -> f64 {
     COMMANDED_TILT_SHARE * configuration.limits.tilt_rad
 }
