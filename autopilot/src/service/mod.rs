@@ -24,6 +24,7 @@ mod equipment;
 mod estimator_source;
 mod event;
 mod file_transfer;
+mod flight_information;
 mod follow;
 mod global_origin;
 mod greeting;

@@ -43,6 +43,7 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::estimator_source::EstimatorSources),
         Box::new(super::motor_test::MotorTests),
         Box::new(super::magnetometer_calibration::MagnetometerCalibrations::default()),
+        Box::new(super::flight_information::FlightInformation),
         Box::new(super::high_latency::HighLatency::default()),
         Box::new(super::manual_control::ManualControl),
         Box::new(super::global_origin::GlobalOrigin),

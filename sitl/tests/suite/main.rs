@@ -22,6 +22,7 @@ mod fence_refusals;
 mod files;
 mod fleet;
 mod flight;
+mod flight_information;
 mod flight_log;
 mod follow;
 mod fuzz;
