@@ -190,7 +190,7 @@ fn what_may_only_be_read_is_protected() {
     for path in [
         "/files/new",
         "/files/hello.txt",
-        "/@PARAM/param.pck",
+        "/@PARAM/param.xml",
         "/metadata/general.json",
         "/camera.xml",
         "/",

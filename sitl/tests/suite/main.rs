@@ -43,6 +43,7 @@ mod navigation_commands;
 mod noise;
 mod obstacles;
 mod orbit;
+mod packed_parameters;
 mod packed_plans;
 mod parameter_errors;
 mod parameter_names;

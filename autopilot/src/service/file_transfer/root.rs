@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! /@MISSION/mission.dat         the mission, packed, to be read and written; fence and rally points beside it
-//! /@PARAM/param.pck             parameters, packed
+//! /@PARAM/param.pck             parameters, packed, to be read and written
 //! /camera.xml                   the camera definition: which settings the camera has
 //! /metadata/general.json        what there is to know of this component
 //! /metadata/parameters.json     names, ranges, units of the parameters
