@@ -4,6 +4,7 @@ mod ardupilot_arming;
 mod arming;
 mod decision;
 mod equipment;
+mod home_requests;
 mod outputs;
 mod parachute;
 mod pilot;
