@@ -30,6 +30,7 @@ mod global_origin;
 mod greeting;
 pub(crate) mod heartbeat;
 mod high_latency;
+mod home_message;
 mod identification;
 mod landing_target;
 mod log;

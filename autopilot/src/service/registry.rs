@@ -47,6 +47,7 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::high_latency::HighLatency::default()),
         Box::new(super::manual_control::ManualControl),
         Box::new(super::global_origin::GlobalOrigin),
+        Box::new(super::home_message::HomeMessages),
         Box::new(super::file_transfer::FileServer::default()),
         Box::new(super::log::LogServer::default()),
         Box::new(super::log_stream::LogStreams::default()),

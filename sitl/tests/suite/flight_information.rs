@@ -1,5 +1,7 @@
 //! What FLIGHT_INFORMATION, WIND and WIND_COV tell, and where home is when a command names no place.
 
+#![allow(deprecated)] // Clients still use what the dialect calls deprecated.
+
 use crate::common::{self, Bench};
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
@@ -81,5 +83,24 @@ fn home_without_a_place_is_here_with_ardupilot() {
     for (identity, result) in [(Identity::ArduPilot, 0), (Identity::Px4, 2)] {
         let mut bench = Bench::of(&common::settings(identity));
         assert_eq!(bench.command(MavCmd::MAV_CMD_DO_SET_HOME, [0.0; 7]), result, "{:?}", bench.texts());
+    }
+}
+
+/// ArduPilot's old message moves home; PX4 does not know it.
+#[test]
+fn home_is_moved_by_its_old_message_with_ardupilot() {
+    for (identity, moved_m) in [(Identity::ArduPilot, 5.0), (Identity::Px4, 0.0)] {
+        let mut bench = Bench::of(&common::settings(identity));
+        let origin = bench.autopilot.vehicle().frame().origin();
+        bench.send(MavMessage::SET_HOME_POSITION(SET_HOME_POSITION_DATA {
+            latitude: (origin.latitude_deg * 1e7).round() as i32,
+            longitude: (origin.longitude_deg * 1e7).round() as i32,
+            altitude: ((origin.altitude_m + 5.0) * 1e3).round() as i32,
+            target_system: 1,
+            ..SET_HOME_POSITION_DATA::default()
+        }));
+        bench.fly(0.01);
+        let home_m = bench.autopilot.vehicle().home().position_m;
+        assert!((home_m.z + moved_m).abs() < 1e-3 && home_m.xy().norm() < 0.02, "{identity:?}: {home_m}");
     }
 }
