@@ -126,7 +126,10 @@ impl Autopilot {
 
     fn count(&mut self) {
         let flies = self.context.vehicle.landed_state() != LandedState::OnGround;
+        let vehicle = &self.context.vehicle;
+        let takes_off = vehicle.flight_times().took_off_us == Some(vehicle.time_us());
         let statistics = self.context.parameters.statistics_mut();
+        statistics.flights += u32::from(takes_off);
         statistics.run_us += TICK_US;
         statistics.flight_us += if flies { TICK_US } else { 0 };
     }

@@ -94,6 +94,11 @@ impl Parameters {
     }
 
     /// What the vehicle counts.
+    pub fn statistics(&self) -> &Statistics {
+        &self.statistics
+    }
+
+    /// The same, to be counted on.
     pub fn statistics_mut(&mut self) -> &mut Statistics {
         &mut self.statistics
     }

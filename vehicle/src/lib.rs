@@ -47,12 +47,12 @@ pub use mode::{Leader, Mode, Needs};
 pub use vehicle::{
     Action, ArmingObstacle, ArmingSubject, AttitudeSetPoint, AxisTarget, BasicId, Battery, BatteryActions,
     BatteryLimits, BatteryPack, BeaconBeam, Cause, ChangeError, Conduct, Encounter, Failsafe,
-    FailsafeSettings, FenceOptions, FenceParts, FenceRecord, FenceStart, FollowHeading, FollowHeight,
-    FollowSettings, GroupRates, HeadingPolicy, Home, LandedState, LogConduct, MissionState, MissionStatus,
-    MotorTest, Notice, ObstacleWatch, OperatorId, OperatorPlace, OrbitHeading, OrbitRequest, OrbitSettings,
-    OrbitStatus, Pilot, PlannedLeg, PositionSetPoint, PrecisionLanding, PrecisionSettings, Pulses, Recovery,
-    Refusal, RemoteId, Reposition, ReturnGoal, ReturnSettings, SelfId, SetPoint, Severity, Sighting,
-    Simulated, SteeringKind, StickSettings, Sticks, StreamRates, Surface, SurfaceSettings,
+    FailsafeSettings, FenceOptions, FenceParts, FenceRecord, FenceStart, FlightTimes, FollowHeading,
+    FollowHeight, FollowSettings, GroupRates, HeadingPolicy, Home, LandedState, LogConduct, MissionState,
+    MissionStatus, MotorTest, Notice, ObstacleWatch, OperatorId, OperatorPlace, OrbitHeading, OrbitRequest,
+    OrbitSettings, OrbitStatus, Pilot, PlannedLeg, PositionSetPoint, PrecisionLanding, PrecisionSettings,
+    Pulses, Recovery, Refusal, RemoteId, Reposition, ReturnGoal, ReturnSettings, SelfId, SetPoint, Severity,
+    Sighting, Simulated, SteeringKind, StickSettings, Sticks, StreamRates, Surface, SurfaceSettings,
     SurroundingsSettings, TICK_S, TICK_US, TargetReport, Threat, TrackedAttitude, Tracking, TrafficSettings,
     TrafficWatch, TrailSettings, Trainer, Vehicle, VehicleSettings, Weakness, YawTarget, wrapped,
 };

@@ -256,7 +256,9 @@ fn turn(context: &mut Context, command: &Command) -> Result<(), Refusal> {
 
 fn set_home(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let vehicle = &mut context.vehicle;
-    if command.parameter(1) == 1.0 {
+    // ArduPilot takes zeros for no place, too.
+    let no_place = vehicle.identity().is_ardupilot() && command.x == 0.0 && command.y == 0.0;
+    if command.parameter(1) == 1.0 || no_place {
         return vehicle.set_home(vehicle.outputs().position_m, None);
     }
     let frame = global_frame(command)?;

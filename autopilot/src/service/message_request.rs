@@ -2,7 +2,8 @@
 
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{
-    AUTOPILOT_VERSION_DATA, AUTOPILOT_VERSION_REQUEST_DATA, HOME_POSITION_DATA, MavCmd, PROTOCOL_VERSION_DATA,
+    AUTOPILOT_VERSION_DATA, AUTOPILOT_VERSION_REQUEST_DATA, FLIGHT_INFORMATION_DATA, HOME_POSITION_DATA,
+    MavCmd, PROTOCOL_VERSION_DATA,
 };
 use vehicle::Refusal;
 
@@ -14,12 +15,14 @@ use crate::speaker::Speaker;
 
 const GET_HOME_POSITION: u16 = MavCmd::MAV_CMD_GET_HOME_POSITION as u16;
 const REQUEST_PROTOCOL_VERSION: u16 = MavCmd::MAV_CMD_REQUEST_PROTOCOL_VERSION as u16;
+const REQUEST_FLIGHT_INFORMATION: u16 = MavCmd::MAV_CMD_REQUEST_FLIGHT_INFORMATION as u16;
 const REQUEST_AUTOPILOT_CAPABILITIES: u16 = MavCmd::MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES as u16;
 
 const COMMANDS: &[CommandEntry] = &[
     CommandEntry::question(GET_HOME_POSITION),
     CommandEntry::question(REQUEST_PROTOCOL_VERSION),
     CommandEntry::question(REQUEST_AUTOPILOT_CAPABILITIES),
+    CommandEntry::question(REQUEST_FLIGHT_INFORMATION),
 ];
 
 /// The older commands for one message each; MAV_CMD_REQUEST_MESSAGE belongs to the service of the intervals, which knows one more.
@@ -54,6 +57,7 @@ impl Service for MessageRequests {
     fn command(&mut self, context: &mut Context, origin: &Origin, command: &Command) -> Outcome {
         let id = match command.number {
             GET_HOME_POSITION => HOME_POSITION_DATA::ID,
+            REQUEST_FLIGHT_INFORMATION => FLIGHT_INFORMATION_DATA::ID,
             REQUEST_PROTOCOL_VERSION => PROTOCOL_VERSION_DATA::ID,
             _ => AUTOPILOT_VERSION_DATA::ID,
         };

@@ -35,6 +35,12 @@ fn the_root_shows_what_there_is_and_files_read_as_they_are() {
     let definition = client.read("/camera.xml").expect("there").len();
     assert_eq!(client.list("/"), Ok(made_and(&["Dfiles"], definition)));
     assert_eq!(client.list(""), client.list("/"));
+    // PX4's clients look for its card.
+    assert_eq!(client.list("/fs"), Ok(vec!["Dmicrosd".to_owned()]));
+    assert_eq!(client.list("/fs/microsd/"), client.list("/"));
+    assert_eq!(client.read("/fs/microsd/files/hello.txt"), Ok(b"hello".to_vec()));
+    assert_eq!(client.list("/fs/microsdcard"), Err(NOT_FOUND));
+    assert_eq!(client.list("/fs/microsd/log"), client.list("/logs"));
     let listed = ["Dbelow", "Fhello.txt\t5"].map(str::to_owned).to_vec();
     assert_eq!(client.list("/files"), Ok(listed.clone()));
     assert_eq!(client.list("files/./"), Ok(listed));
@@ -184,7 +190,7 @@ fn what_may_only_be_read_is_protected() {
     for path in [
         "/files/new",
         "/files/hello.txt",
-        "/@PARAM/param.pck",
+        "/@PARAM/param.xml",
         "/metadata/general.json",
         "/camera.xml",
         "/",

@@ -12,7 +12,7 @@ use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::{MISSION_SET_CURRENT_DATA, MavCmd, MavMessage};
 use vehicle::identity::Identity;
 use vehicle::parameters::FileFormat;
-use vehicle::plan::{MissionItem, Plan, PlanKind, command};
+use vehicle::plan::{MissionItem, Plan, PlanKind, command, frame};
 use vehicle::{MissionState, Mode};
 
 #[test]
@@ -292,4 +292,53 @@ fn a_mission_replays_bit_for_bit() {
     record.assert_same();
     // Another place in the plan of the start is another flight.
     record.assert_depends_on("[30.0,0.0,-12.0]", "[30.0,0.0,-12.5]");
+}
+
+/// PX4's suite (missed waypoint): home comes to be 5 m lower just before a waypoint, whose altitude is above home. The vehicle goes on to
+/// where it is then, and passes it. ArduPilot takes home for the next leg.
+#[test]
+fn a_leg_follows_the_height_of_home_with_px4() {
+    for identity in [Identity::Px4, Identity::ArduPilot] {
+        let relative = |command: u16, north_m: f64, height_m: f64| MissionItem {
+            frame: frame::GLOBAL_RELATIVE_INT,
+            command,
+            parameters: [0.0, if command == command::NAV_WAYPOINT { 2.0 } else { 0.0 }, 0.0, 0.0],
+            position: [47.397_742 + north_m / 111_194.9, 8.545_594, height_m],
+            autocontinue: true,
+        };
+        let mut items = vec![
+            relative(command::NAV_TAKEOFF, 0.0, 20.0),
+            relative(command::NAV_WAYPOINT, 60.0, 20.0),
+            relative(command::NAV_WAYPOINT, 100.0, 20.0),
+            relative(command::NAV_WAYPOINT, 140.0, 20.0),
+        ];
+        if identity.is_ardupilot() {
+            items.insert(0, relative(command::NAV_WAYPOINT, 0.0, 0.0));
+        }
+        let second = items.len() - 2;
+        let mut flight = Flight::of(identity, &items);
+        if identity.is_ardupilot() {
+            assert_eq!(flight.bench.set_mode(Mode::Offboard), 0);
+        }
+        flight.bench.arm();
+        assert_eq!(flight.bench.command(MavCmd::MAV_CMD_MISSION_START, [0.0; 7]), 0);
+        flight.bench.fly_until("near the waypoint", 120.0, |bench| {
+            let vehicle = bench.autopilot.vehicle();
+            vehicle.mission_status().current == second && vehicle.outputs().position_m.x > 90.0
+        });
+        let vehicle = flight.bench.autopilot.vehicle();
+        let home_m = vehicle.home().position_m;
+        let altitude_m = (vehicle.frame().origin().altitude_m - home_m.z - 5.0) as f32;
+        let place = [0.0, 0.0, 0.0, f32::NAN, 47.397_742, 8.545_594, altitude_m];
+        assert_eq!(flight.bench.command(MavCmd::MAV_CMD_DO_SET_HOME, place), 0, "{:?}", flight.bench.texts());
+        flight.bench.fly_until("the waypoint", 60.0, |bench| {
+            bench.autopilot.vehicle().mission_status().current > second
+        });
+        let height_m = home_m.z - flight.bench.autopilot.vehicle().outputs().position_m.z;
+        let expected_m = if identity.is_ardupilot() { 20.0 } else { 15.0 };
+        assert!((height_m - expected_m).abs() < 2.0, "{identity:?}: {height_m}");
+        flight.bench.fly(25.0);
+        let height_m = home_m.z - flight.bench.autopilot.vehicle().outputs().position_m.z;
+        assert!((height_m - 15.0).abs() < 0.5, "{identity:?}: {height_m}");
+    }
 }

@@ -114,7 +114,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("LOIT_OPTIONS", 0, 0..=1, "", "Options of loitering"),
         ("WPNAV_RFND_USE", 1, 0..=1, "", "Use of a range finder in missions"),
         ("WP_RFND_USE", 1, 0..=1, "", "Use of a range finder in missions"),
-        ("LAND_REPOSITION", 1, 0..=1, "", "Sticks move the place of a landing"),
         ("TERRAIN_ENABLE", 1, 0..=1, "", "Use of terrain data; here the ground is known"),
         ("TERRAIN_FOLLOW", 0, 0..=1, "", "Follow the terrain; here places above the terrain and RTL_ALT_TYPE ask for that"),
         ("SIM_TERRAIN", 1, 0..=1, "", "Ground follows terrain data; here that of --world"),

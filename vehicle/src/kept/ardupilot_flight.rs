@@ -96,7 +96,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
     ], whole [
         ("AVOID_ANGLE_MAX", 1000, 0..=4500, "cdeg", "Largest lean away from obstacles in AltHold"),
         ("AVOID_BEHAVE", 0, 0..=1, "", "Slide along obstacles or stop; here sticks slide and Guided stops"),
-        ("RTL_OPTIONS", 0, 0..=4, "", "Options of a return; its heading is its own"),
         ("FENCE_ALT_MAX_TP", 1, 0..=3, "", "What FENCE_ALT_MAX is above; here home"),
         ("FENCE_ALT_MIN_TP", 1, 0..=3, "", "What FENCE_ALT_MIN is above; here home"),
         ("RALLY_INCL_HOME", 1, 0..=1, "", "Home counts as a rally point"),

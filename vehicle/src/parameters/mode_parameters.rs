@@ -88,7 +88,10 @@ pub static ARDUPILOT_MODE_PARAMETERS: &[ConductParameter] = &[
     bitmask!("GUID_OPTIONS", GUIDED_OPTIONS, guided_options, u32::from, options, "Options of the guided mode"),
     bitmask!("AUTO_OPTIONS", AUTO_OPTIONS, auto_options, u32::from, options, "Options of Auto; arming and taking off in it are always allowed"),
     real!("PILOT_TKOFF_ALT", None, 0.0..=1000.0, pilot_takeoff_m, 100.0, "cm", "Height above the ground to which a manual takeoff continues by itself; 0: it does not").also(&[("PILOT_TKO_ALT_M", 1.0)]),
-    bitmask!("PILOT_THR_BHV", THROTTLE, sticks.throttle_behaviour, u32::from, options, "Further functions of the throttle: value 4 disarms soon after a manual landing, otherwise after DISARM_DELAY; the other values have no effect"),
+    bitmask!("PILOT_THR_BHV", THROTTLE, sticks.throttle_behaviour, u32::from, options, "Further functions of the throttle: value 2 lets a throttle above 70 % break off a landing, 4 disarms soon after a manual landing, otherwise after DISARM_DELAY; 1 has no effect"),
+    switch!("LAND_REPOSITION", sticks.move_landings, "Sticks move the place of a landing and turn the nose on the way down"),
+    bitmask!("RTL_OPTIONS", RETURN_OPTIONS, return_home.options, u32::from, options, "Options of a return: value 4 ignores the yaw stick"),
+    bitmask!("SRTL_OPTIONS", RETURN_OPTIONS, trail.options, u32::from, options, "Options of Smart RTL: value 4 ignores the yaw stick"),
     choice!("WVANE_ENABLE", WAYS, weathervane.way, "Side of the vehicle that turns into the wind in Guided and Auto, where GUID_OPTIONS and AUTO_OPTIONS allow it"),
     choice!("WVANE_TAKEOFF", OTHER_WAYS, weathervane.takeoff, "Side of the vehicle that turns into the wind on takeoffs"),
     real!("WVANE_GAIN", None, 0.0..=4.0, weathervane.gain_1_s, "1/s", "Yaw rate into the wind per lean angle"),
@@ -199,6 +202,8 @@ const AUTO_OPTIONS: &[&str] = &[
     "Reserved",
     "Allow weathervaning",
 ];
+
+const RETURN_OPTIONS: &[&str] = &["Reserved", "Reserved", "Ignore the pilot's yaw"];
 
 const MISSION_OPTIONS: &[&str] = &[
     "Clear the mission at a reboot",

@@ -8,6 +8,8 @@ const RESET_EPOCH_S: u64 = 1_451_606_400;
 pub struct Statistics {
     /// How often the vehicle has booted.
     pub boots: u32,
+    /// How often it has taken off.
+    pub flights: u32,
     /// Time in the air, µs.
     pub flight_us: u64,
     /// Time that it was switched on, µs.
@@ -23,6 +25,8 @@ pub struct Statistics {
 pub enum Statistic {
     /// How often the vehicle has booted.
     Boots,
+    /// How often it has taken off.
+    Flights,
     /// Time in the air, s.
     FlightTime,
     /// Time that it was switched on, s.
@@ -39,11 +43,12 @@ pub enum Statistic {
 
 impl Statistic {
     /// All of them with their names.
-    pub const ALL: [(&'static str, Self); 7] = [
+    pub const ALL: [(&'static str, Self); 8] = [
         ("FENCE_TOTAL", Self::FenceItems),
         ("MIS_TOTAL", Self::MissionItems),
         ("RALLY_TOTAL", Self::RallyPoints),
         ("STAT_BOOTCNT", Self::Boots),
+        ("STAT_FLTCNT", Self::Flights),
         ("STAT_FLTTIME", Self::FlightTime),
         ("STAT_RESET", Self::Reset),
         ("STAT_RUNTIME", Self::RunTime),
@@ -53,6 +58,7 @@ impl Statistic {
     pub fn text(self) -> &'static str {
         match self {
             Self::Boots => "Number of boots since the statistics were reset, or from the value that was set",
+            Self::Flights => "Number of flights since the statistics were reset (read-only)",
             Self::FlightTime => "Time in the air since the statistics were reset (read-only)",
             Self::RunTime => "Time switched on since the statistics were reset (read-only)",
             Self::Reset => {
@@ -68,7 +74,7 @@ impl Statistic {
     pub fn unit(self) -> &'static str {
         match self {
             Self::FlightTime | Self::RunTime | Self::Reset => "s",
-            Self::Boots | Self::MissionItems | Self::FenceItems | Self::RallyPoints => "",
+            Self::Boots | Self::Flights | Self::MissionItems | Self::FenceItems | Self::RallyPoints => "",
         }
     }
 
@@ -89,6 +95,7 @@ impl Statistic {
     pub fn of(self, statistics: &Statistics) -> u64 {
         match self {
             Self::Boots => u64::from(statistics.boots),
+            Self::Flights => u64::from(statistics.flights),
             Self::FlightTime => statistics.flight_us / 1_000_000,
             Self::RunTime => statistics.run_us / 1_000_000,
             Self::Reset => statistics.reset_unix_s.saturating_sub(RESET_EPOCH_S),

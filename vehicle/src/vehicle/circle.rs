@@ -23,6 +23,9 @@ pub struct Circle {
     /// Way around that is flown, rad.
     flown_rad: f64,
     speed_m_s: f64,
+    /// How fast the radius grows, m/s, and that, m/s².
+    widens_m_s: f64,
+    widening_m_s2: f64,
 }
 
 impl Circle {
@@ -43,6 +46,8 @@ impl Circle {
             start_rad,
             flown_rad: 0.0,
             speed_m_s: 0.0,
+            widens_m_s: 0.0,
+            widening_m_s2: 0.0,
         }
     }
 
@@ -54,6 +59,11 @@ impl Circle {
     /// Radius, m.
     pub fn radius_m(&self) -> f64 {
         self.radius_m
+    }
+
+    /// Whether it goes clockwise seen from above.
+    pub fn is_clockwise(&self) -> bool {
+        self.direction > 0.0
     }
 
     /// Way around that is flown, rad.
@@ -112,6 +122,13 @@ impl Circle {
         self.direction * self.speed_m_s / self.radius_m
     }
 
+    /// Grows for `dt_s` with a speed, m/s.
+    pub fn widen(&mut self, widens_m_s: f64, dt_s: f64) {
+        self.widening_m_s2 = (widens_m_s - self.widens_m_s) / dt_s;
+        self.widens_m_s = widens_m_s;
+        self.radius_m += widens_m_s * dt_s;
+    }
+
     /// Goes on for `dt_s` and changes its speed towards another one, m/s, with at most a braking, m/s². The nose points to the centre.
     pub fn advance(
         &mut self,
@@ -127,15 +144,16 @@ impl Circle {
         self.set_point(change / dt_s)
     }
 
-    /// Position, velocity v along the circle and acceleration: v²/r to the centre, v̇ along it.
+    /// Position r and its derivatives, with v along the circle and ω = v/r: ṙ outwards and v along it; r̈ − v²/r outwards and v̇ + ṙ ω along it.
     fn set_point(&self, tangential_m_s2: f64) -> PositionSetPoint {
         let (sin, cos) = libm::sincos(self.angle_rad());
         let outward = Vector3::new(cos, sin, 0.0);
         let along = Vector3::new(-sin, cos, 0.0) * self.direction;
         let position_m = self.position_m();
-        let velocity_m_s = along * self.speed_m_s;
-        let acceleration_m_s2 =
-            along * tangential_m_s2 - outward * (self.speed_m_s * self.speed_m_s / self.radius_m);
+        let rate_rad_s = self.speed_m_s / self.radius_m;
+        let velocity_m_s = along * self.speed_m_s + outward * self.widens_m_s;
+        let acceleration_m_s2 = along * (tangential_m_s2 + self.widens_m_s * rate_rad_s)
+            - outward * (self.speed_m_s * self.speed_m_s / self.radius_m - self.widening_m_s2);
         let axes = core::array::from_fn(|axis| AxisTarget::Track {
             position_m: position_m[axis],
             velocity_m_s: velocity_m_s[axis],

@@ -2,6 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::landing_pilot;
 use super::motion::approach;
 use super::proposal::Proposal;
 use super::set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, YawTarget};
@@ -34,7 +35,7 @@ pub fn descend(situation: &Situation, proposal: &mut Proposal, above: Option<[f6
         descend_blind(situation, proposal);
         return;
     }
-    let above = situation.landing_target_m.or(above);
+    let above = situation.landing_target_m.or(above).filter(|_| !situation.landing_is_moved);
     let reference_m = &situation.outputs.setpoint.position_m;
     let height_m = situation.terrain.z_below_m(reference_m) - reference_m.z;
     let slow = situation.conduct.land_speed_m_s;
@@ -50,10 +51,11 @@ pub fn descend(situation: &Situation, proposal: &mut Proposal, above: Option<[f6
     let speed = (slow
         + approach(height_m - situation.conduct.land_slow_below_m, slowing_per_s, braking_m_s2))
     .clamp(slow, fastest);
-    let speed = if waits_above(situation) { 0.0 } else { speed };
-    let [x, y] = match above {
-        Some([x, y]) => [AxisTarget::Position(x), AxisTarget::Position(y)],
-        None => [AxisTarget::HOLD; 2],
+    let speed = if waits_above(situation) && !situation.landing_is_moved { 0.0 } else { speed };
+    let [x, y] = match (landing_pilot::velocity_m_s(situation), above) {
+        (Some(velocity), _) => velocity.map(AxisTarget::Velocity),
+        (None, Some(place)) => place.map(AxisTarget::Position),
+        (None, None) => [AxisTarget::HOLD; 2],
     };
     let axes = [x, y, AxisTarget::Velocity(speed)];
     proposal.follow(situation, &PositionSetPoint { axes, yaw: YawTarget::Hold });

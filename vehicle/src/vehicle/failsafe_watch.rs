@@ -73,6 +73,8 @@ impl Failsafe {
                 proposal.stop_rotors(format!("{} - Disarming", name(situation, cause)));
             }
             Change::Begun => self.act(situation, proposal, cause, response),
+            // A rotor that stands tells nothing, and its loss has just ended the flight.
+            Change::Ended if cause == Cause::RotorFailure && !situation.armed => {}
             Change::Ended => proposal.say(Severity::Info, cleared(situation, cause)),
         }
         Some(change)
@@ -237,6 +239,24 @@ mod tests {
         assert_eq!(failsafe.engaged(), Some((Cause::GroundStationLost, Action::Return)));
         // It is there: nothing more to be said.
         assert!(take_in(&mut failsafe, &mut scene, Cause::GroundStationLost, true).is_empty());
+    }
+
+    #[test]
+    fn a_lost_rotor_is_not_called_mended_after_the_landing() {
+        for (armed, lines) in [(true, vec!["Failsafe cleared: no rotor known to be lost"]), (false, vec![])] {
+            let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+            scene.conduct.failsafe.rotor_failure = Action::Land;
+            let mut failsafe = Failsafe::default();
+            take_in(&mut failsafe, &mut scene, Cause::RotorFailure, true);
+            scene.armed = armed;
+            take_in(&mut failsafe, &mut scene, Cause::RotorFailure, false);
+            scene.wait_us(10_000_000);
+            assert_eq!(
+                said(&take_in(&mut failsafe, &mut scene, Cause::RotorFailure, false)),
+                lines,
+                "{armed}"
+            );
+        }
     }
 
     #[test]

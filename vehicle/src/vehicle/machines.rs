@@ -10,18 +10,21 @@ use super::commanded_turn::CommandedTurn;
 use super::crash_watch::CrashWatch;
 use super::failsafe::Failsafe;
 use super::fence_watch::FenceWatch;
+use super::flight_times::FlightTimes;
 use super::flip::Flip;
 use super::follow::Follow;
 use super::ground_flight::GroundFlight;
 use super::hold_watch::HoldWatch;
 use super::injection::Injection;
 use super::landing::Landing;
+use super::landing_pilot::LandingPilot;
 use super::mission::Mission;
 use super::motor_test::MotorTests;
 use super::obstacle_watch::ObstacleWatch;
 use super::offboard::Offboard;
 use super::orbit::Orbit;
 use super::parachute_watch::ParachuteWatch;
+use super::pilot_turn::PilotTurn;
 use super::pilot_watch::PilotWatch;
 use super::precision_landing::PrecisionLanding;
 use super::pushes::PushClock;
@@ -43,6 +46,7 @@ use super::vibration_watch::VibrationWatch;
 use super::weathervane::Weathervane;
 use super::zigzag::ZigZag;
 use crate::equipment::Equipment;
+use crate::mode::Mode;
 use crate::plan::Program;
 
 /// All machines. None sees another one: each is shown a situation and asks in a proposal.
@@ -70,6 +74,10 @@ pub struct Machines {
     pub crash: CrashWatch,
     /// Touch-down and lift-off.
     pub landing: Landing,
+    /// When it was armed, took off and landed.
+    pub flight_times: FlightTimes,
+    /// What the pilot does about a landing.
+    pub landing_pilot: LandingPilot,
     /// Tests of single rotors.
     pub motor_tests: MotorTests,
     /// Takeoffs.
@@ -86,6 +94,8 @@ pub struct Machines {
     pub zigzag: ZigZag,
     /// The turn into the wind.
     pub weathervane: Weathervane,
+    /// The turn by hand.
+    pub pilot_turn: PilotTurn,
     /// Pushes that a user gives the vehicle.
     pub pushes: PushClock,
     /// The turn that a command asks for.
@@ -131,6 +141,19 @@ pub struct Machines {
 }
 
 impl Machines {
+    /// Whether what flies in a mode comes down to the ground to land.
+    pub fn comes_down(&self, mode: Mode) -> bool {
+        match mode {
+            Mode::Land => true,
+            Mode::Mission | Mode::MissionLanding => {
+                self.mission.is_vertical().1 || self.mission.returns() && self.return_home.descends()
+            }
+            Mode::Return => self.return_home.descends(),
+            Mode::SmartReturn => self.smart_return.descends(),
+            _ => false,
+        }
+    }
+
     /// Those of a vehicle that is `truth` at first, and whose mission is `program`.
     pub fn new(
         settings: &VehicleSettings,
@@ -152,6 +175,8 @@ impl Machines {
             landing: Landing::new(
                 settings.surroundings.terrain.z_below_m(&truth.position_m) - truth.position_m.z,
             ),
+            flight_times: FlightTimes::default(),
+            landing_pilot: LandingPilot::default(),
             motor_tests: MotorTests::default(),
             takeoff: Takeoff::default(),
             climb: StickClimb::default(),
@@ -160,6 +185,7 @@ impl Machines {
             flip: Flip::default(),
             zigzag: ZigZag::default(),
             weathervane: Weathervane::default(),
+            pilot_turn: PilotTurn::default(),
             pushes: PushClock::default(),
             turn: CommandedTurn::default(),
             receiver: Receiver::default(),

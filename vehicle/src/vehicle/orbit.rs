@@ -9,6 +9,7 @@
 use nalgebra::Vector3;
 
 use super::circle::Circle;
+use super::circle_pilot::CirclePilot;
 use super::motion::wrapped;
 use super::notice::{Refusal, Severity};
 use super::orbit_request::{OrbitHeading, OrbitRequest, OrbitStatus};
@@ -69,6 +70,10 @@ pub struct Orbit {
     /// Whether the pilot has changed the height, and the heading.
     lifted: bool,
     turned: bool,
+    /// What the sticks do to the circle.
+    pilot: CirclePilot,
+    /// ArduPilot's radius, m, and rate, rad/s, as they were last looked at.
+    heeded: Option<[f64; 2]>,
 }
 
 impl Orbit {
@@ -150,12 +155,15 @@ impl Orbit {
     fn heed_parameters(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let Some(before) = self.asked else { return };
         let settings = &situation.conduct.orbit;
-        let wanted = Asked {
-            radius_m: settings.radius_m,
-            speed_m_s: settings.rate_rad_s * settings.radius_m,
-            heading: ardupilot_heading(situation),
-            ..before
-        };
+        let heading = ardupilot_heading(situation);
+        let now = [settings.radius_m, settings.rate_rad_s];
+        // What the pilot has changed stays until a parameter changes.
+        if self.heeded.replace(now).is_none_or(|before| before == now) {
+            self.asked = Some(Asked { heading, ..before });
+            return;
+        }
+        let (radius_m, speed_m_s) = (settings.radius_m, settings.rate_rad_s * settings.radius_m);
+        let wanted = Asked { radius_m, speed_m_s, heading, ..before };
         if wanted.radius_m != before.radius_m || wanted.speed_m_s * before.speed_m_s < 0.0 {
             if wanted.radius_m == 0.0 {
                 self.phase = Phase::Turning;
@@ -164,6 +172,20 @@ impl Orbit {
             }
         }
         self.asked = Some(wanted);
+    }
+
+    /// The pilot of ArduPilot's circle changes its radius and rate. Returns whether it goes the other way around now.
+    fn heed_pilot(&mut self, circle: &mut Circle, asked: &mut Asked, situation: &Situation) -> bool {
+        if !self.pilot.acts(situation) {
+            return false;
+        }
+        let acceleration_m_s2 = Circle::tangential_m_s2(situation.limits());
+        let rate_rad_s = self.pilot.rate_rad_s(situation, asked.speed_m_s / asked.radius_m);
+        let widens_m_s = self.pilot.widen(situation, circle.radius_m(), SMALLEST_RADIUS_M, acceleration_m_s2);
+        circle.widen(widens_m_s, TICK_S);
+        (asked.radius_m, asked.speed_m_s) = (circle.radius_m(), rate_rad_s * circle.radius_m());
+        self.asked = Some(*asked);
+        rate_rad_s != 0.0 && (rate_rad_s > 0.0) != circle.is_clockwise()
     }
 
     /// Straight to the nearest point of the circle, at its height.
@@ -181,7 +203,11 @@ impl Orbit {
     }
 
     fn go_around(&mut self, mut circle: Circle, situation: &Situation, proposal: &mut Proposal) {
-        let (Some(asked), limits) = (self.asked, situation.limits()) else { return };
+        let (Some(mut asked), limits) = (self.asked, situation.limits()) else { return };
+        if self.heed_pilot(&mut circle, &mut asked, situation) {
+            self.approach(asked, situation, proposal);
+            return;
+        }
         let share = if situation.identity.is_ardupilot() { CENTRIPETAL_ARDUPILOT } else { CENTRIPETAL_PX4 };
         let tangential_m_s2 = Circle::tangential_m_s2(limits);
         let mut wanted_m_s = asked.speed_m_s.abs().min(circle.fastest_m_s(share, limits));

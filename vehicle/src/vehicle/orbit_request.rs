@@ -66,10 +66,17 @@ pub struct OrbitSettings {
 }
 
 impl OrbitSettings {
+    /// Of [`Self::options`]: the pilot's sticks change radius and rate.
+    const BY_STICKS: u8 = 1;
     /// Of [`Self::options`]: the nose points along the way around.
     const FACES_TRAVEL: u8 = 2;
     /// Of [`Self::options`]: the circle is around where the mode begins, not ahead of it.
     const BEGINS_AT_CENTRE: u8 = 4;
+
+    /// Whether the pilot's sticks change radius and rate of ArduPilot's circle.
+    pub fn sticks_change_it(&self) -> bool {
+        self.options & Self::BY_STICKS != 0
+    }
 
     /// Whether the nose of ArduPilot's circle points along the way around.
     pub fn faces_travel(&self) -> bool {

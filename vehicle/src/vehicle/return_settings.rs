@@ -47,6 +47,8 @@ pub struct ReturnSettings {
     pub least_climb_m: f64,
     /// Height per distance above which it need not climb near home; below 0.5 there is no such cone (ArduPilot).
     pub cone_slope: f64,
+    /// Options, as the parameter adds them up (ArduPilot).
+    pub options: u8,
     /// Half of the angle of the cone above home within which it need not climb to its full height, rad; 0: there is none (PX4).
     pub cone_rad: f64,
 }

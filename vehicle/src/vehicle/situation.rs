@@ -80,6 +80,10 @@ pub struct Situation<'a> {
     pub region: Option<RegionOfInterest>,
     /// Whether it stands on the ground.
     pub landed: bool,
+    /// Whether it comes down to the ground to land.
+    pub comes_down: bool,
+    /// Whether the pilot's sticks have moved the place of the landing.
+    pub landing_is_moved: bool,
     /// The rotor that is known to be lost: front (0), right, back or left (3).
     pub lost_rotor: Option<usize>,
     /// North and east of a target that landings go to, m.

@@ -4,6 +4,7 @@ mod ardupilot_arming;
 mod arming;
 mod decision;
 mod equipment;
+mod home_requests;
 mod outputs;
 mod parachute;
 mod pilot;
@@ -147,6 +148,8 @@ impl Vehicle {
         self.consult(|parts, situation, proposal| {
             parts.landing.watch(situation, proposal);
             parts.landing.choose_speed(comes_down, situation, proposal);
+            parts.landing_pilot.watch(situation, proposal);
+            parts.flight_times.watch(situation);
         });
         self.step_equipment();
         self.step_parachute();
@@ -250,7 +253,11 @@ impl Vehicle {
                 parts.smart_return.watch(situation, proposal);
             }
             // The wind goes before headings that are asked for, as in ArduPilot.
-            let turned = parts.weathervane.step(situation, proposal);
+            let by_hand = parts.pilot_turn.step(situation, proposal);
+            if !by_hand {
+                parts.pilot_turn.end(situation, proposal, &mut parts.turn, &mut parts.mission);
+            }
+            let turned = by_hand || parts.weathervane.step(situation, proposal);
             if parts.turn.is_on() && !turned {
                 parts.turn.step(proposal);
             } else if !turned && situation.chooses_its_heading() {
@@ -393,6 +400,8 @@ fn situation<'a>(
         home: decided.home(),
         region: decided.region(),
         landed: landing.is_landed(),
+        comes_down: machines.comes_down(decided.mode()),
+        landing_is_moved: machines.landing_pilot.has_moved(),
         lost_rotor: machines.rotors.lost_rotor(),
         landing_target_m: machines.precision.place_m(&conduct.precision),
         surface: machines.obstacles.surface(),

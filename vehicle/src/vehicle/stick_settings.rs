@@ -16,6 +16,9 @@ pub struct StickSettings {
     /// What the throttle does besides, as ArduPilot's parameter adds it up (PILOT_THR_BHV).
     #[serde(default)]
     pub throttle_behaviour: u8,
+    /// Whether roll, pitch and yaw move the place of a landing (ArduPilot: LAND_REPOSITION).
+    #[serde(default)]
+    pub move_landings: bool,
     /// Vertical acceleration, m/s².
     pub climb_m_s2: f64,
     /// Share of the throttle's way above and below its middle that means no climb (THR_DZ).
@@ -61,9 +64,15 @@ impl Default for StickSettings {
 }
 
 /// Of the behaviours of the throttle.
+const ENDS_LANDINGS: u8 = 2;
 const DISARMS_ON_LANDING: u8 = 4;
 
 impl StickSettings {
+    /// Whether a high throttle breaks a landing off.
+    pub fn high_throttle_ends_landings(&self) -> bool {
+        self.throttle_behaviour & ENDS_LANDINGS != 0
+    }
+
     /// Whether a landing by hand ends as the others do.
     pub fn disarms_on_landing(&self) -> bool {
         self.throttle_behaviour & DISARMS_ON_LANDING != 0
@@ -77,6 +86,7 @@ impl StickSettings {
                 turn_rad_s: 202.5_f64.to_radians(),
                 dead_zone: 0.0,
                 throttle_behaviour: 0,
+                move_landings: true,
                 climb_m_s2: 2.5,
                 throttle_dead_zone: 0.1,
                 least_thrust: 0.0,
@@ -94,6 +104,7 @@ impl StickSettings {
             turn_rad_s: 150.0_f64.to_radians(),
             dead_zone: tenth(),
             throttle_behaviour: 0,
+            move_landings: false,
             climb_m_s2: 3.0,
             throttle_dead_zone: 0.05,
             least_thrust: 0.08,

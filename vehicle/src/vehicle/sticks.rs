@@ -43,13 +43,17 @@ impl Sticks {
         (self.turn.clamp(-1.0, 1.0) * settings.turn_rad_s).clamp(-fastest_rad_s, fastest_rad_s)
     }
 
+    /// Forward and to the right without their dead zones, together at most 1: a stick in the corner is not faster than one at the edge.
+    pub fn over_ground(&self, settings: &StickSettings) -> Vector2<f64> {
+        let live = self.live(settings);
+        let stick = Vector2::new(live.forward, live.right);
+        if stick.norm() > 1.0 { stick.normalize() } else { stick }
+    }
+
     /// Velocities in the frame of the heading, and a turn no faster than a limit, rad/s.
     pub fn set_point(&self, conduct: &Conduct, yaw_rad: f64, fastest_rad_s: f64) -> PositionSetPoint {
         let live = self.live(&conduct.sticks);
-        let stick = Vector2::new(live.forward, live.right);
-        // A stick in the corner is not faster than one at the edge.
-        let stick = if stick.norm() > 1.0 { stick.normalize() } else { stick };
-        let velocity = Rotation2::new(yaw_rad) * stick * conduct.stick_speed_m_s;
+        let velocity = Rotation2::new(yaw_rad) * self.over_ground(&conduct.sticks) * conduct.stick_speed_m_s;
         let turn_rad_s = live.turn_rad_s(&conduct.sticks, fastest_rad_s);
         PositionSetPoint {
             axes: [

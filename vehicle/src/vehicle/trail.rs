@@ -14,12 +14,14 @@ pub struct TrailSettings {
     pub accuracy_m: f64,
     /// So many places are kept at most; 0: there is no trail.
     pub most_places: u16,
+    /// Options of the way back, as the parameter adds them up.
+    pub options: u8,
 }
 
 /// ArduPilot's.
 impl Default for TrailSettings {
     fn default() -> Self {
-        Self { accuracy_m: 2.0, most_places: 300 }
+        Self { accuracy_m: 2.0, most_places: 300, options: 0 }
     }
 }
 

@@ -1,7 +1,7 @@
 //! MAVLink FTP: files that are made when they are read, and those of a store.
 //!
 //! ```text
-//!  FileServer ──► PlanUploads: packed plans, which change the flight, at once
+//!  FileServer ──► PackUploads: packed plans and parameters, which change the flight, at once
 //!      │
 //!      ├─ job ──► Desk, away from the flight: open files, listings, what was answered lately ──► FileStore
 //!      │
@@ -14,11 +14,11 @@ mod desk;
 mod job;
 mod listing;
 mod message;
+mod pack_upload;
 mod parameter_pack;
 mod pending;
 mod plan_pack;
 mod plan_text;
-mod plan_upload;
 mod root;
 mod server;
 mod sessions;

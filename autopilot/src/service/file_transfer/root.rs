@@ -2,14 +2,15 @@
 //!
 //! ```text
 //! /@MISSION/mission.dat         the mission, packed, to be read and written; fence and rally points beside it
-//! /@PARAM/param.pck             parameters, packed
+//! /@PARAM/param.pck             parameters, packed, to be read and written
 //! /camera.xml                   the camera definition: which settings the camera has
 //! /metadata/general.json        what there is to know of this component
 //! /metadata/parameters.json     names, ranges, units of the parameters
 //! /metadata/events.json         events, and the modes and components that they are about
 //! /plans/mission.waypoints      the mission as a text, and fence and rally points beside it
-//! /logs/                        flights, to be read; /APM/LOGS/ is the same
+//! /logs/                        flights, to be read; /APM/LOGS/ and /log/ are the same
 //! /files/                       what the user shares
+//! /fs/microsd/                  the root itself
 //! ```
 
 use vehicle::plan::PlanKind;
@@ -33,6 +34,10 @@ const MADE: [(&str, &[&str]); 4] = [
 /// Where ArduPilot's clients look for logs: the same as the folder of the store.
 const ARDUPILOT_LOGS: &str = "APM/LOGS";
 const ARDUPILOT: &str = "APM";
+/// Where PX4's clients look for its card, which is the root here, and for logs on it.
+const PX4_CARD: &str = "fs/microsd";
+const PX4_CARDS: &str = "fs";
+const PX4_LOGS: &str = "log";
 
 /// The path in its plain form. Nothing leads up: a path with `..` is no path.
 pub fn plain(path: &str) -> Result<String, Nak> {
@@ -41,8 +46,14 @@ pub fn plain(path: &str) -> Result<String, Nak> {
         return Err(Nak::FileNotFound);
     }
     let path = names.join("/");
-    let below = path.strip_prefix(ARDUPILOT_LOGS).filter(|rest| rest.is_empty() || rest.starts_with('/'));
-    Ok(below.map(|rest| format!("{LOGS}{rest}")).unwrap_or(path))
+    let path = below(&path, PX4_CARD).map_or(path.as_str(), |rest| rest.trim_start_matches('/'));
+    let logs = below(path, ARDUPILOT_LOGS).or_else(|| below(path, PX4_LOGS));
+    Ok(logs.map_or_else(|| path.to_owned(), |rest| format!("{LOGS}{rest}")))
+}
+
+/// What follows a folder in a path that is that of it or leads into it.
+fn below<'a>(path: &'a str, folder: &str) -> Option<&'a str> {
+    path.strip_prefix(folder).filter(|rest| rest.is_empty() || rest.starts_with('/'))
 }
 
 /// Whether a path is one of the made files or folders, or the root.
@@ -86,6 +97,9 @@ pub fn made_folder(context: &Context, path: &str) -> Option<Vec<Vec<u8>>> {
     let path = plain(path).ok()?;
     if path == ARDUPILOT {
         return Some(vec![b"DLOGS\0".to_vec()]);
+    }
+    if path == PX4_CARDS {
+        return Some(vec![b"Dmicrosd\0".to_vec()]);
     }
     let (folder, names) = MADE.iter().find(|(folder, _)| *folder == path)?;
     let entry = |name: &&str| {

@@ -9,8 +9,8 @@ use vehicle::identity::Identity;
 use super::desk::{Desk, Subject, Task};
 use super::job::{Answer, FileTransferJob};
 use super::message::{Nak, Reply, Request, opcode};
+use super::pack_upload::PackUploads;
 use super::pending::Pending;
-use super::plan_upload::PlanUploads;
 use super::root;
 use crate::codec::{Frame, id};
 use crate::context::Context;
@@ -24,7 +24,7 @@ const MESSAGES: usize = 4;
 /// Serves files.
 #[derive(Debug)]
 pub struct FileServer {
-    plans: PlanUploads,
+    plans: PackUploads,
     desk: Arc<Mutex<Desk>>,
     pending: Pending,
     answers: Receiver<Answer>,
@@ -36,7 +36,7 @@ impl Default for FileServer {
     fn default() -> Self {
         let (to_answers, answers) = channel();
         Self {
-            plans: PlanUploads::default(),
+            plans: PackUploads::default(),
             desk: Arc::default(),
             pending: Pending::default(),
             answers,

@@ -11,5 +11,6 @@ mod status;
 mod table;
 mod targets;
 mod truth;
+mod wind;
 
 pub use table::Telemetry;

@@ -3,7 +3,9 @@
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::*;
 
-use super::{actuators, attitude, board, estimate, navigation, position, sensors, status, targets, truth};
+use super::{
+    actuators, attitude, board, estimate, navigation, position, sensors, status, targets, truth, wind,
+};
 use crate::service::Service;
 use crate::stream::{Build, Group, Stream};
 
@@ -79,5 +81,7 @@ const STREAMS: &[Stream] = &[
     Stream::new(HOME_POSITION_DATA::ID, [0.5, 0.5], position::home_position).of(Group::ExtendedStatus),
     Stream::new(EXTENDED_SYS_STATE_DATA::ID, [1.0, 5.0], status::extended_sys_state)
         .of(Group::ExtendedStatus),
+    Stream::new(WIND_COV_DATA::ID, [0.5, 10.0], wind::wind_cov),
+    Stream::new(WIND_DATA::ID, [0.0, 0.0], wind::wind).of(Group::Extra3).of_ardupilot(),
     Stream::new(ODOMETRY_DATA::ID, [0.0, 30.0], position::odometry),
 ];

@@ -10,6 +10,7 @@ mod guided;
 mod missions;
 mod modes;
 mod payload;
+mod pilot;
 mod precision;
 mod proximity;
 mod sticks;

@@ -235,3 +235,34 @@ fn a_landing_by_hand_disarms_if_it_is_to() {
         assert_eq!(flier.is_armed(), !disarms, "{options}");
     }
 }
+
+/// Suite: CircleManualControlEntryLeft and ...Right: sticks change the circle. To the right it gets faster by one degree per second in a
+/// second, and forwards smaller.
+#[test]
+fn sticks_change_a_circle() {
+    const CIRCLE: u32 = 7;
+    let mut flier = Flier::new();
+    flier.set_all(&[("CIRCLE_RADIUS_M", 10.0), ("CIRCLE_RATE", 10.0)]);
+    flier.take_off(10.0, GUIDED);
+    flier.rc(3, 1500);
+    flier.change_mode(CIRCLE);
+    flier.wait("its speed", 30.0, |flier| flier.speed_m_s() > 1.7);
+    flier.rc(1, 2000);
+    flier.fly(5.0);
+    flier.rc(1, 1500);
+    flier.fly(3.0);
+    let faster_m_s = 15_f64.to_radians() * 10.0;
+    assert!((flier.speed_m_s() - faster_m_s).abs() < 0.2, "{} of {faster_m_s}", flier.speed_m_s());
+    let radius_m = |flier: &Flier| flier.vehicle().orbit_status().map_or(0.0, |orbit| orbit.radius_m);
+    flier.rc(2, 1600);
+    flier.fly(3.0);
+    flier.rc(2, 1500);
+    flier.fly(3.0);
+    let (wider_m, centre_m) = (radius_m(&flier), flier.vehicle().orbit_status().map(|orbit| orbit.centre_m));
+    assert!(wider_m > 11.0, "{wider_m}");
+    let off_m =
+        centre_m.map_or(0.0, |centre_m| (flier.vehicle().outputs().position_m - centre_m).xy().norm());
+    assert!((off_m - wider_m).abs() < 0.5, "{off_m} of {wider_m}");
+    flier.set("CIRCLE_RADIUS_M", 12.0);
+    flier.wait("the radius of the parameter", 30.0, |flier| (radius_m(flier) - 12.0).abs() < 0.1);
+}

@@ -250,6 +250,15 @@ impl Mission {
         }
     }
 
+    /// Home has another height: the present leg begins again, to where its altitude is now.
+    pub fn heed_home(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let flies = situation.mode == Mode::Mission && self.progress == Progress::Started && !self.paused;
+        if flies && self.course.way_m().is_some() {
+            self.give_up(None);
+            self.take_over(situation, proposal);
+        }
+    }
+
     /// Its mode is entered.
     pub fn enter(&mut self, situation: &Situation, proposal: &mut Proposal) {
         match self.progress {

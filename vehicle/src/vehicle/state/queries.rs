@@ -7,6 +7,7 @@ use super::super::battery::{Battery, capacity_ah};
 use super::super::conduct::Conduct;
 use super::super::failsafe::Failsafe;
 use super::super::fence_watch::FenceRecord;
+use super::super::flight_times::FlightTimes;
 use super::super::home::Home;
 use super::super::landed::LandedState;
 use super::super::mission::{Beginning, MissionStatus, PlannedLeg, planned_way};
@@ -116,6 +117,11 @@ impl Vehicle {
         self.closed_loop.wind_m_s()
     }
 
+    /// When it was armed, took off and landed.
+    pub fn flight_times(&self) -> &FlightTimes {
+        &self.machines.flight_times
+    }
+
     /// The battery.
     pub fn battery(&self) -> &Battery {
         &self.machines.battery
@@ -209,20 +215,14 @@ impl Vehicle {
 
     /// Whether it stands, climbs from the ground, flies or descends to the ground.
     pub fn landed_state(&self) -> LandedState {
-        let (climbs, descends) = self.machines.mission.is_vertical();
+        let (climbs, _) = self.machines.mission.is_vertical();
         match self.mode() {
             _ if self.machines.landing.is_landed() => LandedState::OnGround,
             // Its mode may stay that of a landing that has ended.
             _ if !self.is_armed() => LandedState::InAir,
             Mode::Mission if climbs => LandedState::TakingOff,
-            Mode::Mission if descends => LandedState::Landing,
-            Mode::Mission if self.machines.mission.returns() && self.machines.return_home.descends() => {
-                LandedState::Landing
-            }
             Mode::Takeoff => LandedState::TakingOff,
-            Mode::Land => LandedState::Landing,
-            Mode::Return if self.machines.return_home.descends() => LandedState::Landing,
-            Mode::SmartReturn if self.machines.smart_return.descends() => LandedState::Landing,
+            mode if self.machines.comes_down(mode) => LandedState::Landing,
             _ => LandedState::InAir,
         }
     }

@@ -476,14 +476,6 @@ impl Vehicle {
         self.use_speeds(speeds).map_err(|error| Refusal::denied(error.to_string()))
     }
 
-    /// Moves home.
-    ///
-    /// # Errors
-    /// [`Refusal`] too far away.
-    pub fn set_home(&mut self, position_m: Vector3<f64>, yaw_rad: Option<f64>) -> Result<(), Refusal> {
-        self.consult(|_, situation, proposal| proposal.set_home(situation, position_m, yaw_rad))
-    }
-
     /// Looks at something, `None` at nothing any more: until another one, or until the rotors stop.
     pub fn look(&mut self, look: Option<&Look>) {
         self.consult(|parts, situation, proposal| {

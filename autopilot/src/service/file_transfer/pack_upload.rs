@@ -1,30 +1,58 @@
-//! Packed plans that are being written. They change the flight when they are closed, so they depend on nothing but received frames and
-//! simulation time: no disk has a part in them.
+//! Packed plans and parameters that are being written. They change the flight when they are closed, so they depend on nothing but received
+//! frames and simulation time: no disk has a part in them.
 
+use vehicle::Severity;
 use vehicle::plan::PlanKind;
 
 use super::answered::Answered;
 use super::message::{Client, Nak, Reply, Request, opcode};
 use super::sessions::Sessions;
-use super::{plan_pack, root};
+use super::{parameter_pack, plan_pack, root};
 use crate::context::Context;
+use crate::service::parameter;
 
-/// A packed plan as far as it has come.
+/// What is packed.
+#[derive(Clone, Copy, Debug)]
+enum Pack {
+    Plan(PlanKind),
+    Parameters,
+}
+
+/// A packed file as far as it has come.
 #[derive(Debug)]
 struct Received {
-    kind: PlanKind,
+    pack: Pack,
     bytes: Vec<u8>,
+}
+
+impl Pack {
+    /// That of a plain path.
+    fn of(path: &str) -> Option<Self> {
+        if path == parameter_pack::PATH {
+            Some(Self::Parameters)
+        } else {
+            plan_pack::kind_of(path).map(Self::Plan)
+        }
+    }
+
+    /// Bytes of the largest one that is taken.
+    fn largest(self) -> usize {
+        match self {
+            Self::Plan(kind) => plan_pack::largest(kind),
+            Self::Parameters => parameter_pack::LARGEST,
+        }
+    }
 }
 
 /// All of them, and what was done lately.
 #[derive(Debug, Default)]
-pub struct PlanUploads {
+pub struct PackUploads {
     open: Sessions<Received>,
     answered: Answered,
 }
 
-impl PlanUploads {
-    /// Carries out a request and returns its answer, if it is about a plan that is written.
+impl PackUploads {
+    /// Carries out a request and returns its answer, if it is about a packed file that is written.
     pub fn take(
         &mut self,
         context: &mut Context,
@@ -53,13 +81,13 @@ impl PlanUploads {
         match request.opcode {
             opcode::CREATE_FILE | opcode::OPEN_FILE_WO => {
                 let path = request.text().and_then(root::plain).ok();
-                let Some(kind) = path.as_deref().and_then(plan_pack::kind_of) else {
+                let Some(pack) = path.as_deref().and_then(Pack::of) else {
                     // The number is another file's from now on.
                     self.open.close(client, request.session);
                     return None;
                 };
                 let opened =
-                    self.open.open(client, request.session, Received { kind, bytes: Vec::new() }, time_us);
+                    self.open.open(client, request.session, Received { pack, bytes: Vec::new() }, time_us);
                 Some(opened.map(|()| 0_u32.to_le_bytes().to_vec()))
             }
             opcode::OPEN_FILE_RO => {
@@ -71,8 +99,12 @@ impl PlanUploads {
                 Some(received.write(request))
             }
             opcode::TERMINATE_SESSION => {
-                let received = self.open.close(client, request.session)?;
-                Some(take_plan(context, &received).map(|()| Vec::new()))
+                let Received { pack, bytes } = self.open.close(client, request.session)?;
+                let taken = match pack {
+                    Pack::Plan(kind) => take_plan(context, kind, &bytes),
+                    Pack::Parameters => take_parameters(context, &bytes),
+                };
+                Some(taken.map(|()| Vec::new()))
             }
             opcode::RESET_SESSIONS => {
                 self.open.reset(client);
@@ -88,7 +120,7 @@ impl Received {
     fn write(&mut self, request: &Request) -> Result<Vec<u8>, Nak> {
         let start = request.offset as usize;
         let end = start.saturating_add(request.data.len());
-        if end > plan_pack::largest(self.kind) {
+        if end > self.pack.largest() {
             return Err(Nak::NoSpace);
         }
         self.bytes.resize(self.bytes.len().max(end), 0);
@@ -100,11 +132,29 @@ impl Received {
 }
 
 /// Takes a packed plan over, or says why not: clients do not look at the answer to a close.
-fn take_plan(context: &mut Context, received: &Received) -> Result<(), Nak> {
-    let Received { kind, bytes } = received;
-    let items = plan_pack::unpack(bytes, *kind);
-    items.and_then(|items| context.vehicle.set_plan(*kind, items)).map_err(|fault| {
+fn take_plan(context: &mut Context, kind: PlanKind, bytes: &[u8]) -> Result<(), Nak> {
+    let items = plan_pack::unpack(bytes, kind);
+    items.and_then(|items| context.vehicle.set_plan(kind, items)).map_err(|fault| {
         context.reject_plan(kind.name(), &fault);
         Nak::Fail
     })
+}
+
+/// Sets the parameters of a packed file, one after the other, as PARAM_SET does; what is refused is said, and the others are set.
+fn take_parameters(context: &mut Context, bytes: &[u8]) -> Result<(), Nak> {
+    let values = parameter_pack::unpack(bytes).map_err(|reason| {
+        context.say(Severity::Warning, &format!("Parameter file rejected: {reason}"));
+        Nak::Fail
+    })?;
+    let mut result = Ok(());
+    for (name, value) in values {
+        match context.parameters.set(&name, value, &mut context.vehicle) {
+            Ok(()) => parameter::tell(context, &name),
+            Err(error) => {
+                context.say(Severity::Warning, &error.to_string());
+                result = Err(Nak::Fail);
+            }
+        }
+    }
+    result
 }
