@@ -14,6 +14,17 @@ impl Display for Magnitude {
     }
 }
 
+/// A number without an exponent where that is short.
+struct Shown(f64);
+
+impl Display for Shown {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> FormatResult {
+        let Self(value) = self;
+        let is_short = *value == 0.0 || (1e-3..1e6).contains(&value.max(-*value));
+        if is_short { write!(formatter, "{value}") } else { write!(formatter, "{value:e}") }
+    }
+}
+
 /// A violated precondition of a design, one variant each, with the numbers that show it.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -36,7 +47,8 @@ pub enum DesignError {
     },
     /// A matrix must be symmetric and is not.
     #[error(
-        "{name} is not symmetric: elements ({row}, {column}) and ({column}, {row}) differ by {difference:e}"
+        "{name} is not symmetric: elements ({row}, {column}) and ({column}, {row}) differ by {}",
+        Shown(*difference)
     )]
     NotSymmetric {
         /// The matrix.
@@ -55,7 +67,7 @@ pub enum DesignError {
         name: &'static str,
     },
     /// Q must be positive semidefinite.
-    #[error("{name} is not positive semidefinite: it has the eigenvalue {eigenvalue:e}")]
+    #[error("{name} is not positive semidefinite: it has the eigenvalue {}", Shown(*eigenvalue))]
     NotPositiveSemidefinite {
         /// The matrix.
         name: &'static str,
@@ -78,9 +90,7 @@ pub enum DesignError {
         value: f64,
     },
     /// With a degree of stability λ the costs of later samples grow, and those of the Laguerre functions must decay faster: a < λ.
-    #[error(
-        "Laguerre scaling factor a = {scale} is not below the degree of stability lambda = {lambda}; lower a or raise lambda"
-    )]
+    #[error("Laguerre scaling factor a = {scale} is not below the degree of stability lambda = {lambda}")]
     LaguerreDecay {
         /// Given scaling factor.
         scale: f64,
@@ -132,7 +142,7 @@ pub enum DesignError {
         value: f64,
     },
     /// A mode on or outside the circle of radius λ cannot be moved by the inputs.
-    #[error("the mode at {re} {im:+}i is not controllable, so no gain stabilises it")]
+    #[error("the mode at {re} {im:+}i is not controllable, so no gain stabilizes it")]
     Uncontrollable {
         /// Real part of the eigenvalue.
         re: f64,
@@ -140,7 +150,7 @@ pub enum DesignError {
         im: f64,
     },
     /// A mode on or outside the circle of radius λ does not show in the cost.
-    #[error("the mode at {re} {im:+}i is not detectable through Q, so the optimum need not stabilise it")]
+    #[error("the mode at {re} {im:+}i is not detectable through Q, so the optimum need not stabilize it")]
     Undetectable {
         /// Real part of the eigenvalue.
         re: f64,
@@ -179,7 +189,9 @@ pub enum DesignError {
         name: &'static str,
     },
     /// The closed loop of this design is not stable.
-    #[error("the closed loop is not stable: its largest eigenvalue has magnitude {spectral_radius}")]
+    #[error(
+        "the closed loop is not stable: its largest eigenvalue has magnitude {spectral_radius}, and only below 1 is allowed"
+    )]
     Unstable {
         /// Largest magnitude of the closed-loop eigenvalues.
         spectral_radius: f64,

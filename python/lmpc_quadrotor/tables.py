@@ -32,7 +32,10 @@ def list_of_names(argument: str, given: Iterable[str]) -> list[str]:
     """Names as a list; refuses a single string, which Python would split into letters."""
     if isinstance(given, str):
         raise ArgumentError(f"{argument} = {given!r}; expected a list of names: [{given!r}]")
-    names = list(given)
+    try:
+        names = list(given)
+    except TypeError:
+        raise ArgumentError(f"{argument} = {given!r}; expected a list of names") from None
     for name in names:
         if not isinstance(name, str):
             raise ArgumentError(f"{argument} has {name!r}; expected names")

@@ -124,7 +124,7 @@ impl<V: Send + Sync> Fleet<V> {
         self.members.iter().map(|member| &member.vehicle)
     }
 
-    /// The same, to be changed. One that has failed does not fly before [`Fleet::change_each`] has changed it.
+    /// The same, to be changed. One that has failed does not fly before [`Fleet::replace_each`] has replaced it.
     pub fn vehicles_mut(&mut self) -> impl ExactSizeIterator<Item = &mut V> {
         self.members.iter_mut().map(|member| &mut member.vehicle)
     }
@@ -154,24 +154,22 @@ impl<V: Send + Sync> Fleet<V> {
         })
     }
 
-    /// Changes vehicles, by their indices and on several threads: restores or restarts them. `change` returns whether it has; such a
-    /// vehicle flies on, even if it had failed.
+    /// Replaces vehicles, by their indices and on several threads: restores or restarts them. `replacement` returns what flies instead of
+    /// a vehicle, even if that had failed, or `None` if it stays. All are replaced, or none.
     ///
     /// # Errors
-    /// That of a vehicle that refuses; others may have changed.
-    pub fn change_each<E: Send>(
+    /// That of the first vehicle without a replacement.
+    pub fn replace_each<E: Send>(
         &mut self,
-        change: impl Fn(usize, &mut V) -> Result<bool, E> + Sync,
+        replacement: impl Fn(usize, &V) -> Result<Option<V>, E> + Sync,
     ) -> Result<(), E> {
-        let Self { members, threads } = self;
-        threads.install(|| {
-            members.par_iter_mut().enumerate().try_for_each(|(index, member)| {
-                if change(index, &mut member.vehicle)? {
-                    member.failure = None;
-                }
-                Ok(())
-            })
-        })
+        let replacements: Result<Vec<Option<V>>, E> = self.map(replacement).into_iter().collect();
+        for (member, replacement) in self.members.iter_mut().zip(replacements?) {
+            if let Some(vehicle) = replacement {
+                *member = Member { vehicle, failure: None };
+            }
+        }
+        Ok(())
     }
 }
 

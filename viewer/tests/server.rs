@@ -241,12 +241,19 @@ fn whoever_comes_later_gets_the_latest_of_everything() {
     assert!(viewer.is_watched());
 }
 
+/// Memory that this process has now, bytes; not known on every system.
+fn resident_bytes() -> Option<usize> {
+    let pages = std::fs::read_to_string("/proc/self/statm").ok()?;
+    Some(pages.split(' ').nth(1)?.parse::<usize>().ok()? * 4096)
+}
+
 #[test]
-fn a_browser_that_reads_nothing_neither_delays_the_others_nor_gets_what_is_old() {
+fn a_browser_that_reads_nothing_neither_delays_the_others_nor_gets_what_is_old_nor_takes_memory() {
     let viewer = viewer();
     let mut slow = our_browser(&viewer);
     let mut quick = our_browser(&viewer);
     let many = Frame { vehicles: vec![VehicleState::default(); 200], ..frame(0.0) };
+    let before = resident_bytes();
     // As much as no socket buffers: more than 200 MB. Each call returns at once, or this would not end.
     for number in 1..=8_000 {
         viewer.show(&Frame { time_s: f64::from(number), ..many.clone() });
@@ -254,6 +261,10 @@ fn a_browser_that_reads_nothing_neither_delays_the_others_nor_gets_what_is_old()
     let start = Instant::now();
     while next_time_s(&mut quick) < 8_000.0 {
         assert!(start.elapsed() < PATIENCE, "the quick one waits for the slow one");
+    }
+    if let (Some(before), Some(now)) = (before, resident_bytes()) {
+        // A quarter of what a queue for the slow one would take. Other tests run meanwhile.
+        assert!(now < before + (50 << 20), "{now} bytes, {before} before");
     }
     let mut frames = 0;
     while next_time_s(&mut slow) < 8_000.0 {

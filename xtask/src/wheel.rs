@@ -74,7 +74,8 @@ pub fn make_for_tests(
     let wheels = workspace.target("wheels-for-tests");
     let package = Package { vehicle, stage: "wheel-for-tests", wheels: &wheels, beside };
     package.write(workspace, progress, &python, |maturin| {
-        maturin.args(["--profile", "dev", "--compatibility", "linux"]);
+        // With what the tests have compiled: see the feature in the package's Cargo.toml.
+        maturin.args(["--profile", "dev", "--compatibility", "linux", "--features", "workspace"]);
         maturin.arg("--target-dir").arg(workspace.target(""));
     })
 }

@@ -28,6 +28,7 @@ const MOST_VEHICLES: usize = 1_000_000;
 const MOST_THREADS: usize = 1024;
 
 /// A vehicle of a fleet.
+#[derive(Clone)]
 struct Member {
     vehicle: Vehicle,
     /// Where its flights begin.
@@ -35,10 +36,20 @@ struct Member {
 }
 
 impl Member {
-    fn restart(&mut self, motion: Option<&[f64; MOTION]>) -> Result<(), String> {
-        self.start.commands = self.vehicle.commands;
-        self.vehicle.restore(&self.start)?;
-        motion.map_or(Ok(()), |motion| self.vehicle.place(motion))
+    /// At the start, under its present inputs, maybe in another motion.
+    fn restarted(&self, motion: Option<&[f64; MOTION]>) -> Result<Self, String> {
+        let mut restarted = self.clone();
+        restarted.start.commands = self.vehicle.commands;
+        restarted.vehicle.restore(&restarted.start)?;
+        motion.map_or(Ok(()), |motion| restarted.vehicle.place(motion))?;
+        Ok(restarted)
+    }
+
+    /// As it was saved.
+    fn restored(&self, saved: &Saved) -> Result<Self, String> {
+        let mut restored = self.clone();
+        restored.vehicle.restore(saved)?;
+        Ok(restored)
     }
 }
 
@@ -149,7 +160,9 @@ fn members(
     let designed = kinds.first.iter().map(|index| settings[*index]).collect();
     let designed = quadrotor::Fleet::of(designed, threads).map_err(no_threads)?;
     let vehicles = designed
-        .map(|_, (configuration, commands)| Vehicle::new(configuration, commands, actuation))
+        .map(|kind, (configuration, commands)| {
+            Vehicle::new(configuration, commands, actuation).map_err(of_vehicle(kinds.first[kind]))
+        })
         .into_iter()
         .collect::<Result<Vec<_>, _>>()
         .map_err(ParameterError::new_err)?;
@@ -158,6 +171,11 @@ fn members(
         Member { start: vehicle.save(), vehicle }
     };
     Ok(kinds.of_each.into_iter().map(member).collect())
+}
+
+/// A refusal, as one of a vehicle.
+fn of_vehicle(vehicle: usize) -> impl Fn(String) -> String {
+    move |refusal| format!("vehicle {vehicle}: {refusal}")
 }
 
 fn no_threads(error: FleetError) -> PyErr {
@@ -308,14 +326,13 @@ impl Fleet {
         };
         let restarted: HashMap<usize, Option<[f64; MOTION]>> =
             vehicles.iter().enumerate().map(|(row, vehicle)| (*vehicle, motion_of(row))).collect();
+        let restarted = |vehicle: usize, member: &Member| {
+            let motion = restarted.get(&vehicle)?;
+            Some(member.restarted(motion.as_ref()).map_err(of_vehicle(vehicle)))
+        };
         let fleet = &mut self.fleet;
         python
-            .detach(|| {
-                fleet.change_each(|vehicle, member| match restarted.get(&vehicle) {
-                    Some(motion) => member.restart(motion.as_ref()).map(|()| true),
-                    None => Ok(false),
-                })
-            })
+            .detach(|| fleet.replace_each(|vehicle, member| restarted(vehicle, member).transpose()))
             .map_err(ArgumentError::new_err)
     }
 
@@ -337,10 +354,10 @@ impl Fleet {
             return Err(ArgumentError::new_err("saved has flights with another actuation than this fleet's"));
         }
         let fleet = &mut self.fleet;
-        let restored = python.detach(|| {
-            fleet.change_each(|vehicle, member| member.vehicle.restore(&saved[vehicle]).map(|()| true))
-        });
-        restored.map_err(ArgumentError::new_err)
+        let restored = |vehicle: usize, member: &Member| {
+            member.restored(&saved[vehicle]).map(Some).map_err(of_vehicle(vehicle))
+        };
+        python.detach(|| fleet.replace_each(restored)).map_err(ArgumentError::new_err)
     }
 }
 

@@ -134,6 +134,14 @@ impl Input {
         }
     }
 
+    /// Whether it is on or off.
+    fn is_switch(self) -> bool {
+        match self {
+            Self::Shared(_, field) => matches!(field, Field::Boolean { .. }),
+            Self::Own(own) => own.range.is_none(),
+        }
+    }
+
     /// Its value as a number; 1 is true.
     pub fn get(self, commands: &Commands) -> f64 {
         match self {
@@ -158,6 +166,10 @@ impl Input {
             return Err(ParameterError::new_err(format!(
                 "{name} = {value}{unit}; allowed {minimum} to {maximum}{unit}"
             )));
+        }
+        if self.is_switch() && value != 0.0 && value != 1.0 {
+            let name = self.name();
+            return Err(ParameterError::new_err(format!("{name} = {value}; expected True or False")));
         }
         match self {
             Self::Shared(_, field) => match field {

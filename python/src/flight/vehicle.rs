@@ -4,8 +4,8 @@ use std::fmt::Display;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use quadrotor::{
-    Activity, ClosedLoopVehicle, Configuration, InputSignal, Inputs, Outputs, PlantSimulation, PlantState,
-    PositionReference, Simulation, SimulationError,
+    Activity, ClosedLoopVehicle, Configuration, ConfigurationError, InputSignal, Inputs, Outputs,
+    PlantSimulation, PlantState, PositionReference, Simulation, SimulationError,
 };
 
 use super::actuation::Actuation;
@@ -14,6 +14,8 @@ use super::saved::{EngineState, Saved};
 
 /// How many numbers a motion has: position, velocity, quaternion and body rates.
 pub const MOTION: usize = 13;
+/// Below this length of a quaternion, rounding decides what attitude it is.
+const LEAST_NORM: f64 = 1e-6;
 
 /// What flies.
 #[derive(Clone)]
@@ -119,6 +121,9 @@ impl Vehicle {
 
     /// Changes parameters in flight.
     pub fn reconfigure(&mut self, configuration: &Configuration) -> Result<(), String> {
+        if configuration.preset != self.configuration.preset {
+            return Err(text(ConfigurationError::Fixed { name: "airframe.preset" }));
+        }
         let resolved = configuration.resolved().map_err(text)?;
         match &mut self.engine {
             Engine::Loop(simulation) => simulation.reconfigure(&resolved).map_err(text)?,
@@ -143,8 +148,13 @@ impl Vehicle {
         let [x, y, z, u, v, w, q0, q1, q2, q3, p, q, r] = *motion;
         let attitude = Quaternion::new(q0, q1, q2, q3);
         let norm = attitude.norm();
-        if !motion.iter().all(|number| number.is_finite()) || norm < 1e-6 {
-            return Err("motion must be finite, with a quaternion that is not zero".to_owned());
+        if let Some(place) = motion.iter().position(|number| !number.is_finite()) {
+            return Err(format!("motion[{place}] = {}; expected a finite number", motion[place]));
+        }
+        if norm < LEAST_NORM {
+            return Err(format!(
+                "motion[6:10] = [{q0}, {q1}, {q2}, {q3}]; expected a quaternion of length {LEAST_NORM} or more"
+            ));
         }
         let placed = |mut state: PlantState| {
             state.body.position_m = Vector3::new(x, y, z);
@@ -156,7 +166,7 @@ impl Vehicle {
         match &mut self.engine {
             Engine::Loop(simulation) => {
                 let state = placed(*simulation.plant_state());
-                simulation.place(simulation.time_us(), state).map_err(text)
+                simulation.place(simulation.time_us(), state).map_err(|error| format!("motion: {error}"))
             }
             Engine::Plant(simulation) => {
                 let state = placed(simulation.plant_state());

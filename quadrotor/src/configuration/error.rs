@@ -6,17 +6,19 @@ use thiserror::Error;
 use alloc::format;
 use alloc::string::{String, ToString};
 
+use super::remedy;
 use crate::{Cause, NoiseEffect, Quantity, ValueRange};
-
-/// What helps against instability when no parameter alone is to blame.
-const REMEDY: &str =
-    "lower the loop's output weight, raise its increment weight, or lower airframe.rotor.time_constant";
 
 /// A mass to 10 g, or to two digits if it is less than 100 g.
 fn rounded(mass_kg: f64, to: fn(f64) -> f64) -> f64 {
     let digits = 2.0 - (libm::floor(libm::log10(mass_kg)) + 1.0).min(0.0);
     let scale = libm::pow(10.0, digits);
     to(mass_kg * scale) / scale
+}
+
+/// A time, s, to hundredths of its unit.
+fn shown(time_s: f64) -> String {
+    if time_s < 0.1 { format!("{:.2} ms", 1e3 * time_s) } else { format!("{time_s:.2} s") }
 }
 
 /// Where the ground is, unless it is at the height of the origin.
@@ -40,8 +42,8 @@ pub enum ConfigurationError {
     },
     /// The rotors cannot carry the vehicle with thrust to spare for control.
     #[error(
-        "{} kg is too heavy: these rotors carry {} kg; raise airframe.rotor.speed_max",
-        mass_kg,
+        "airframe.mass = {mass_kg} kg is too heavy; allowed up to {} kg, which these rotors carry; lower it, or raise \
+         airframe.rotor.speed_max",
         rounded(*carried_kg, libm::floor)
     )]
     TooHeavy {
@@ -52,8 +54,8 @@ pub enum ConfigurationError {
     },
     /// The idle rotors already lift the vehicle: it could not descend.
     #[error(
-        "{} kg is too light: these rotors carry {} kg when idle; lower airframe.rotor.speed_min",
-        mass_kg,
+        "airframe.mass = {mass_kg} kg is too light; allowed from {} kg, which these rotors carry when idle; raise it, or lower \
+         airframe.rotor.speed_min",
         rounded(*idle_kg, libm::ceil)
     )]
     TooLight {
@@ -90,7 +92,7 @@ pub enum ConfigurationError {
         largest: f64,
     },
     /// A controller or the Kalman predictor cannot be designed.
-    #[error("cannot design the {part}: {source}")]
+    #[error("cannot design the {part}: {source}{}", remedy::of_design(part, source))]
     Design {
         /// What, for a person: "altitude controller", "Kalman predictor", …
         part: &'static str,
@@ -99,8 +101,9 @@ pub enum ConfigurationError {
     },
     /// The closed loop is not stable, with the rotors' lag and the sampling that the controllers' models do not have.
     #[error(
-        "the {name} loop is unstable: errors double every {doubling_s:.2} s; {}",
-        cause.as_ref().map_or_else(|| REMEDY.to_string(), Cause::to_string)
+        "the {name} loop is unstable: errors double every {}; {}",
+        shown(*doubling_s),
+        cause.as_ref().map_or_else(|| remedy::of_instability(name), Cause::to_string)
     )]
     Unstable {
         /// "roll", "pitch", "yaw", "north", "east" or "altitude".

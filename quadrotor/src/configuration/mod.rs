@@ -5,6 +5,7 @@ pub(crate) mod for_airframe;
 pub(crate) mod parameter;
 pub(crate) mod parameters;
 pub(crate) mod quantity;
+mod remedy;
 pub(crate) mod resolved;
 pub(crate) mod settings;
 pub(crate) mod unit;

@@ -75,12 +75,24 @@ fn a_vehicle_that_is_lost_is_lost_alone() {
     let stood = fleet.vehicles().nth(4).unwrap().time_us();
     fleet.advance_to(END_US + 1_000, inputs);
     assert_eq!(fleet.vehicles().nth(4).unwrap().time_us(), stood);
+    let restarted = |vehicle: usize, simulation: &Simulation| {
+        let mut restarted = simulation.clone();
+        restarted.restore(starts[vehicle]).map(|()| restarted)
+    };
+    // All or none: nothing has changed when one of them is refused.
+    let before = fleet.outputs();
+    let refused =
+        fleet.replace_each(
+            |vehicle, simulation| {
+                if vehicle == 6 { Err(vehicle) } else { Ok(restarted(vehicle, simulation).ok()) }
+            },
+        );
+    assert_eq!(refused, Err(6));
+    assert_eq!(fleet.outputs(), before);
+    assert!(fleet.failures().nth(4).unwrap().is_some());
     fleet
-        .change_each(|vehicle, simulation| {
-            if vehicle != 4 {
-                return Ok(false);
-            }
-            simulation.restore(starts[vehicle]).map(|()| true)
+        .replace_each(|vehicle, simulation| {
+            (vehicle == 4).then(|| restarted(vehicle, simulation)).transpose()
         })
         .unwrap();
     fleet.advance_to(END_US + 2_000, inputs);

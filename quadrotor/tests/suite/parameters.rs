@@ -98,12 +98,12 @@ fn values_that_contradict_one_another_are_refused() {
         (
             "airframe.mass",
             3.0,
-            "3 kg is too heavy: these rotors carry 1.78 kg; raise airframe.rotor.speed_max",
+            "airframe.mass = 3 kg is too heavy; allowed up to 1.78 kg, which these rotors carry; lower it, or raise airframe.rotor.speed_max",
         ),
         (
             "airframe.rotor.speed_min",
             300.0,
-            "0.7 kg is too light: these rotors carry 1 kg when idle; lower airframe.rotor.speed_min",
+            "airframe.mass = 0.7 kg is too light; allowed from 1 kg, which these rotors carry when idle; raise it, or lower airframe.rotor.speed_min",
         ),
         (
             "airframe.inertia.x",

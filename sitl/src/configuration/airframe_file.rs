@@ -315,7 +315,7 @@ mod tests {
             ),
             (OWN.replace("mass = 1.2", "mass = \"heavy\""), "airframe.mass = heavy; allowed 0.005–50 kg"),
             (OWN.replace("mass = 1.2", "mass = [1]"), "airframe.mass is a number"),
-            (OWN.replace("mass = 1.2", "mass = 9"), "9 kg is too heavy: these rotors carry"),
+            (OWN.replace("mass = 1.2", "mass = 9"), "airframe.mass = 9 kg is too heavy; allowed up to"),
             (
                 OWN.replace("mass = 1.2\n", ""),
                 "airframe.mass missing; add it, or airframe.preset = one of paper, crazyflie",

@@ -90,9 +90,9 @@ pub struct Arguments {
 
     /// UDP port for a pilot's radio
     ///
-    /// Datagrams have 8 or 16 pulses of 16 bits, µs, the lowest byte first, as ArduPilot's SITL receives them on its port 5501. The
-    /// last pulses stay until others come. Further vehicles have a port each, 10 apart; 0 is any free port. The port is open to
-    /// this machine only. [default: none]
+    /// A datagram has the pulses of 8 or 16 channels in µs, 16 bits each, the lowest byte first, as ArduPilot's SITL receives them on port
+    /// 5501. Pulses hold until the next datagram. Each further vehicle has a port of its own, 10 above the one before it. Port 0 is any free
+    /// port. Only programs on this machine can reach the port. [default: none]
     #[arg(long, env = "LMPC_SITL_RC_PORT", value_name = "PORT", help_heading = LINKS, hide_short_help = true)]
     pub rc_port: Option<u16>,
 
@@ -388,7 +388,7 @@ pub struct Arguments {
 
     /// Names, units, axes and start values of --fmu (TOML)
     ///
-    /// For an FMU whose variables are not named as ours. `[variables]` has our names and its names, `[frame]` its axes,
+    /// For an FMU whose variables have other names than ours. `[variables]` has our names and its names, `[frame]` its axes,
     /// `[parameters]` its start values.
     #[arg(long, env = "LMPC_SITL_MAP", value_name = "FILE.toml", help_heading = FMU, hide_short_help = true)]
     pub map: Option<PathBuf>,

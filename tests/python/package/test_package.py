@@ -92,6 +92,9 @@ def test_types_are_those_of_the_module(tmp_path):
         "limit = quadrotor.control.Limit.range('input', 1, np.arange(20))\n"
         "fleet = quadrotor.Fleet(2)\n"
         "fleet.restart(np.array([0]))\n"
+        "from lmpc_quadrotor.pytest_plugin import Sitl, SitlFactory\n"
+        "def test_flies(sitl: Sitl, sitl_factory: SitlFactory) -> None:\n"
+        "    address: str = sitl_factory(seed=sitl.seed).pymavlink\n"
     )
     for module, arguments in [
         ("mypy", ["--strict", "--cache-dir", str(tmp_path / "cache"), "-p", "lmpc_quadrotor"]),

@@ -165,7 +165,15 @@ def test_another_motion():
         (lambda: Simulation(inputs={"altitude": 1.0}), "there is no input altitude; it is an output, and only read"),
         (lambda: Simulation({1: 2.0}), "parameters has the name 1; expected text"),
         (lambda: Simulation().fly(1.0, outputs=[1]), "outputs has 1; expected names"),
-        (lambda: Simulation({"airframe.mass": 5.0}), "too heavy"),
+        (lambda: Simulation({"airframe.mass": 5.0}), "airframe.mass = 5 kg is too heavy; allowed up to 1.78 kg"),
+        (lambda: Simulation().set_parameters({"airframe.preset": "iris"}), "airframe.preset is fixed for the whole flight"),
+        (lambda: Simulation(inputs={"armed": 2}), "armed = 2; expected True or False"),
+        (lambda: Simulation(inputs={"armed": float("nan")}), "armed = NaN; expected True or False"),
+        (lambda: Fleet(2, inputs={"rotor.failed[2]": [0, 0.5]}), "rotor.failed[2] = 0.5; expected True or False"),
+        (lambda: Simulation().place([0] * 13), "motion[6:10] = [0, 0, 0, 0]; expected a quaternion of length"),
+        (lambda: Simulation().place([0, float("inf"), *[0] * 11]), "motion[1] = inf; expected a finite number"),
+        (lambda: Simulation().read(3), "names = 3; expected a list of names"),
+        (lambda: Fleet(3, {"airframe.mass": [0.6, 0.7, 5.0]}), "vehicle 2: airframe.mass = 5 kg is too heavy"),
         (lambda: Simulation(inputs={"reference.position.x": 1e9}), "allowed -1000000 to 1000000 m"),
         (lambda: Simulation(inputs={"reference.yaw": "north"}), "reference.yaw = 'north'; expected a number"),
         (lambda: Simulation(actuation="thrust"), "actuation = \"thrust\"; allowed are 'reference', 'rates' and 'rotors'"),
@@ -237,6 +245,23 @@ def test_a_fleet_saves_restarts_and_survives_a_lost_vehicle():
     fleet.advance(2.0)
     assert fleet.failed.tolist() == [False, True, False]
     assert "the motion has diverged" in fleet.failures[1] and fleet.failures[0] is None
+
+
+def test_a_fleet_restarts_and_restores_all_or_none():
+    """A vehicle that is refused comes last, so that those before it would have been changed."""
+    fleet = Fleet(3)
+    fleet.set({"disturbance.torque.x": [1e3, 0.0, 0.0]})
+    fleet.advance(2.0)
+    before = fleet.save()
+    assert fleet.failed.tolist() == [True, False, False]
+    here = [1, 2, -3, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0]
+    with pytest.raises(ArgumentError, match=r"vehicle 2: motion\[6:10\]"):
+        fleet.restart([0, 1, 2], [here, here, [0] * 13])
+    with pytest.raises(ArgumentError, match="saved is damaged"):
+        fleet.restore([before[1], before[1], before[2][:-1]])
+    assert fleet.save() == before and fleet.failed.tolist() == [True, False, False]
+    fleet.restart([0, 1], [here, here])
+    assert not fleet.failed.any() and fleet["position.x"].tolist()[:2] == [1.0, 1.0]
 
 
 INTERRUPTED = """

@@ -36,7 +36,7 @@ def run(program, *arguments, environment=None, timeout=60):
     (("--set", "COM_ACT_FAIL_ACT=9"), 2, "COM_ACT_FAIL_ACT = 9; allowed 0 (Warn), 2 (Land), 4 (Terminate)"),
     (("--set", "NO_SUCH=1"), 2, "--set: unknown parameter NO_SUCH; --list-parameters shows them all"),
     (("--set", "airframe.mas=1"), 2, "--set: unknown parameter airframe.mas; did you mean airframe.mass?"),
-    (("--set", "airframe.mass=3"), 2, "3 kg is too heavy: these rotors carry 1.78 kg; raise airframe.rotor.speed_max"),
+    (("--set", "airframe.mass=3"), 2, "airframe.mass = 3 kg is too heavy; allowed up to 1.78 kg, which these rotors carry; lower it, or raise airframe.rotor.speed_max"),
     (("--set", "LIM_TILT=45"), 2, "LIM_TILT = 45 rad; allowed 0.05–1.2 rad (3°–69°)"),
     (("--set", "controller.kind=pid"), 2, "controller.kind = pid; allowed 1 (lmpc), 2 (ssmpc), 3 (dlqr)"),
     (("--set", "SIM_SPEEDUP=5"), 2, "--set: SIM_SPEEDUP has a flag of its own: --speed"),

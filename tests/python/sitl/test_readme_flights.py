@@ -61,7 +61,8 @@ def test_each_block_alone(start, block):
 @pytest.mark.parametrize("backwards", [False, True], ids=["in order", "backwards"])
 @pytest.mark.parametrize("group", GROUPS, ids=lambda group: " ".join(group) or "defaults")
 def test_all_blocks_on_one_vehicle(start, group, backwards):
-    stand = Stand(start, group)
+    """Each from where the one before has left the vehicle. At the speed of the wall clock, each flies alone above."""
+    stand = Stand(start, group if "--speed" in group else (*group, "--speed", "4"))
     flights = GROUPS[group]
     for block in reversed(flights) if backwards else flights:
         stand.fly(block)

@@ -33,13 +33,20 @@ pub enum SetError {
     #[error("{0} is calculated from mass and rotors (read-only); set those instead")]
     Calculated(String),
     /// The closed loop cannot fly with it.
-    #[error("{name}: {source}")]
+    #[error("{}", refusal(name, source))]
     Refused {
         /// Name asked for.
         name: String,
         /// Why.
         source: Box<ChangeError>,
     },
+}
+
+/// Why the closed loop refuses a parameter. Mostly the reason begins with its name.
+fn refusal(name: &str, reason: &ChangeError) -> String {
+    let reason = reason.to_string();
+    let named = reason.strip_prefix(name).is_some_and(|rest| rest.starts_with(' '));
+    if named { reason } else { format!("{name}: {reason}") }
 }
 
 impl SetError {

@@ -386,7 +386,7 @@ mod tests {
             (
                 "FRAME_MASS",
                 3.0,
-                "FRAME_MASS: 3 kg is too heavy: these rotors carry 1.78 kg; raise airframe.rotor.speed_max",
+                "FRAME_MASS: airframe.mass = 3 kg is too heavy; allowed up to 1.78 kg, which these rotors carry; lower it, or raise airframe.rotor.speed_max",
             ),
             ("C_ATT_N", 2.5, "C_ATT_N = 2.5; allowed whole numbers 1–20"),
             ("CTRL_KIND", 4.0, "CTRL_KIND = 4; allowed 1 (lmpc), 2 (ssmpc), 3 (dlqr)"),
