@@ -27,10 +27,17 @@ macro_rules! figure {
     };
 }
 
-// The models have the loop inside, and bandwidths follow from the whole airframe.
-const ALTITUDE: &[&str] = &["controller.altitude.", "controller.model", "airframe."];
-const POSITION: &[&str] =
-    &["controller.position.", "controller.attitude.", "controller.kind", "controller.model", "airframe."];
+// The models have the loop inside and the drag per believed mass, and bandwidths follow from the whole airframe.
+const ALTITUDE: &[&str] =
+    &["controller.altitude.", "controller.model", "controller.mass_factor", "airframe."];
+const POSITION: &[&str] = &[
+    "controller.position.",
+    "controller.attitude.",
+    "controller.kind",
+    "controller.model",
+    "controller.mass_factor",
+    "airframe.",
+];
 const ATTITUDE: &[&str] = &["controller.attitude.", "controller.model", "airframe."];
 
 /// Spectral radius, distance from the regulator's and condition number of each design.
