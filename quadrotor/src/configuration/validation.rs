@@ -1,6 +1,6 @@
 //! Checks on a configuration: every range, then what must fit together.
 
-use crate::design::controller_limits::{COMMANDED_TILT_SHARE, USABLE_THRUST_SHARE};
+use crate::design::controller_limits::{USABLE_THRUST_SHARE, commanded_tilt_rad};
 use crate::plant::ground::greatest_start_z_m;
 use crate::{
     Airframe, AirframePreset, Configuration, ConfigurationError, Controllers, GRAVITY_M_S2, Mixer,
@@ -20,7 +20,7 @@ pub(crate) fn validate(configuration: &Configuration) -> Result<(), Configuratio
     validate_rotors(&configuration.airframe)?;
     let airframe = &configuration.airframe;
     let limits = &configuration.limits;
-    let leaning_m_s2 = GRAVITY_M_S2 * libm::tan(COMMANDED_TILT_SHARE * limits.tilt_rad);
+    let leaning_m_s2 = GRAVITY_M_S2 * libm::tan(commanded_tilt_rad(configuration));
     if limits.acceleration_horizontal_m_s2 >= leaning_m_s2 {
         return Err(ConfigurationError::Inconsistent {
             name: "limits.acceleration.horizontal",

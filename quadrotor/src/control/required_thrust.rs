@@ -32,10 +32,9 @@ impl RequiredThrust {
     pub(crate) fn is_beyond_lean(configuration: &Configuration, reference: &PositionReference) -> bool {
         let whole = Self::whole(configuration, reference);
         let horizontal_m_s2 = whole.acceleration_m_s2.xy().norm();
-        horizontal_m_s2 > NOTHING_M_S2 && {
-            let lean_rad = reference_tilt_rad(configuration);
-            horizontal_m_s2 > whole.most_horizontal_m_s2(configuration, lean_rad)
-        }
+        let lean_rad = reference_tilt_rad(configuration);
+        horizontal_m_s2 > NOTHING_M_S2
+            && horizontal_m_s2 > whole.most_horizontal_m_s2(configuration, lean_rad)
     }
 
     /// a + D v and its derivatives.

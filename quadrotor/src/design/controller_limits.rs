@@ -11,6 +11,12 @@ pub(crate) const COMMANDED_TILT_SHARE: f64 = 0.91;
 /// Share of the tilt limit up to which a reference may lean itself: a lean that is foretold with its derivatives is not overshot.
 const REFERENCE_TILT_SHARE: f64 = 0.96;
 
+/// Largest tilt that the position controller commands, rad, beside a reference that does not lean farther itself: 0.91 of the tilt
+/// limit. The rest is room for the attitude to overshoot its command.
+pub fn commanded_tilt_rad(configuration: &Configuration) -> f64 {
+    COMMANDED_TILT_SHARE * configuration.limits.tilt_rad
+}
+
 /// Largest tilt of a reference that is followed as it is, rad.
 pub(crate) fn reference_tilt_rad(configuration: &Configuration) -> f64 {
     REFERENCE_TILT_SHARE * configuration.limits.tilt_rad

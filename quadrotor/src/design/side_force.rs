@@ -1,13 +1,7 @@
 //! The largest horizontal force that a hovering vehicle can hold its place against.
 
 use crate::Configuration;
-use crate::design::controller_limits::{COMMANDED_TILT_SHARE, thrust_range_n};
-
-/// Largest tilt that the position controller commands, rad, beside a reference that does not lean farther itself: 0.91 of the tilt
-/// limit. The rest is room for the attitude to overshoot its command.
-pub fn commanded_tilt_rad(configuration: &Configuration) -> f64 {
-    COMMANDED_TILT_SHARE * configuration.limits.tilt_rad
-}
+use crate::design::controller_limits::{commanded_tilt_rad, thrust_range_n};
 
 /// Largest thrust that the altitude controller commands, N.
 pub fn commanded_thrust_n(configuration: &Configuration) -> f64 {
