@@ -35,6 +35,6 @@ pub use mission_item::MissionItemMessage;
 pub use parameter_value::{Encoding, parameter_hash};
 pub use payload::Payload;
 pub use position_target::{SetPositionTarget, TargetPosition};
-pub use scale::{boot_ms, boot_us, centimetres_per_second, floats, millimetres, scaled_degrees};
+pub use scale::{boot_ms, boot_us, centimetres_per_second, degrees, floats, millimetres, scaled_degrees};
 pub use target::{COMPONENT, Target, target_of};
 pub use true_state::hil_state_quaternion;

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Frame, id};
+use super::{Frame, degrees, id};
 
 /// Position of a target, in the terms of its message.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,8 +46,8 @@ impl SetPositionTarget {
         let position = match frame.message_id() {
             id::SET_POSITION_TARGET_LOCAL_NED => TargetPosition::Local(payload.reals(4).into()),
             id::SET_POSITION_TARGET_GLOBAL_INT => TargetPosition::Global {
-                latitude_deg: f64::from(payload.i32(4)) / 1e7,
-                longitude_deg: f64::from(payload.i32(8)) / 1e7,
+                latitude_deg: degrees(payload.i32(4)),
+                longitude_deg: degrees(payload.i32(8)),
                 altitude_m: f64::from(payload.f32(12)),
             },
             _ => return None,

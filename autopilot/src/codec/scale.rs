@@ -23,6 +23,11 @@ pub fn scaled_degrees(degrees: f64) -> i32 {
     (degrees * 1e7).round() as i32
 }
 
+/// Degrees from those of the protocol.
+pub fn degrees(scaled: i32) -> f64 {
+    f64::from(scaled) / 1e7
+}
+
 /// Metres as whole millimetres.
 pub fn millimetres(metres: f64) -> i32 {
     (metres * 1e3).round() as i32

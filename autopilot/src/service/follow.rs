@@ -8,7 +8,7 @@ use vehicle::{Refusal, TargetReport, Vehicle};
 
 use super::parameter;
 use super::{CommandEntry, Outcome, Progress, Service};
-use crate::codec::{Command, Frame, Payload, id};
+use crate::codec::{Command, Frame, Payload, degrees, id};
 use crate::context::Context;
 use crate::envelope::Origin;
 
@@ -154,11 +154,8 @@ fn place_m(
 ) -> Option<Vector3<f64>> {
     let [latitude, longitude] = [payload.i32(offset), payload.i32(offset + 4)];
     let origin_m = vehicle.frame().origin().altitude_m;
-    let place = Geodetic {
-        latitude_deg: f64::from(latitude) / 1e7,
-        longitude_deg: f64::from(longitude) / 1e7,
-        altitude_m: origin_m,
-    };
+    let place =
+        Geodetic { latitude_deg: degrees(latitude), longitude_deg: degrees(longitude), altitude_m: origin_m };
     if (latitude, longitude) == (0, 0) || !place.is_valid() || !altitude_m.is_finite() {
         return None;
     }

@@ -7,7 +7,7 @@ use vehicle::{Refusal, Severity, Vehicle};
 
 use super::command::global_frame;
 use super::{CommandEntry, Outcome, Progress, Service};
-use crate::codec::{Command, Frame, millimetres, scaled_degrees};
+use crate::codec::{Command, Frame, degrees, millimetres, scaled_degrees};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin};
 use crate::stream::Stream;
@@ -40,9 +40,9 @@ impl Service for GlobalOrigin {
 
     fn receive(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
         let payload = frame.payload();
-        let degrees = |at| f64::from(payload.i32(at)) / 1e7;
+        let [latitude_deg, longitude_deg] = [0, 4].map(|at| degrees(payload.i32(at)));
         let altitude_m = f64::from(payload.i32(8)) / 1000.0;
-        let asked = Geodetic { latitude_deg: degrees(0), longitude_deg: degrees(4), altitude_m };
+        let asked = Geodetic { latitude_deg, longitude_deg, altitude_m };
         if let Err(refusal) = move_origin(context, asked) {
             context.say(Severity::Warning, &refusal.to_string());
             context.outbox.send(Destination::Peer(origin.peer), message(&context.vehicle));

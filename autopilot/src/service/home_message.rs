@@ -6,7 +6,7 @@ use vehicle::Severity;
 use vehicle::world::Geodetic;
 
 use super::Service;
-use crate::codec::Frame;
+use crate::codec::{Frame, degrees};
 use crate::context::Context;
 use crate::envelope::Origin;
 
@@ -35,8 +35,8 @@ impl Service for HomeMessages {
             vehicle.outputs().position_m
         } else {
             vehicle.frame().to_local_m(&Geodetic {
-                latitude_deg: f64::from(latitude) / 1e7,
-                longitude_deg: f64::from(longitude) / 1e7,
+                latitude_deg: degrees(latitude),
+                longitude_deg: degrees(longitude),
                 altitude_m: f64::from(altitude_mm) / 1e3,
             })
         };

@@ -8,7 +8,7 @@ use vehicle::world::{Geodetic, heading_deg};
 use vehicle::{BasicId, LandedState, OperatorId, OperatorPlace, SelfId, Vehicle};
 
 use super::Service;
-use crate::codec::{Frame, Payload, scaled_degrees};
+use crate::codec::{Frame, Payload, degrees, scaled_degrees};
 use crate::context::Context;
 use crate::envelope::Origin;
 use crate::stream::{Build, Component, Stream};
@@ -77,11 +77,7 @@ impl Service for RemoteIdentification {
 /// A place in units of 1e-7 degrees with an altitude, m, in the local frame; zero and zero stand for none.
 fn place(vehicle: &Vehicle, latitude: i32, longitude: i32, altitude_m: f32) -> Option<Vector3<f64>> {
     let altitude_m = if altitude_m > UNKNOWN_ALTITUDE_M { f64::from(altitude_m) } else { 0.0 };
-    let place = Geodetic {
-        latitude_deg: f64::from(latitude) / 1e7,
-        longitude_deg: f64::from(longitude) / 1e7,
-        altitude_m,
-    };
+    let place = Geodetic { latitude_deg: degrees(latitude), longitude_deg: degrees(longitude), altitude_m };
     (place.is_valid() && (latitude, longitude) != (0, 0)).then(|| vehicle.frame().to_local_m(&place))
 }
 

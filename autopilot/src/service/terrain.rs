@@ -9,7 +9,7 @@ use vehicle::identity::Identity;
 use vehicle::world::Geodetic;
 
 use super::Service;
-use crate::codec::{Frame, scaled_degrees};
+use crate::codec::{Frame, degrees, scaled_degrees};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin};
 use crate::stream::{Group, Stream};
@@ -57,7 +57,7 @@ fn report(vehicle: &Vehicle) -> MavMessage {
 /// The same of a place, degrees · 1e7.
 fn report_of(vehicle: &Vehicle, [lat, lon]: [i32; 2]) -> MavMessage {
     let altitude_m = vehicle.frame().origin().altitude_m;
-    let [latitude_deg, longitude_deg] = [lat, lon].map(|scaled| f64::from(scaled) / 1e7);
+    let [latitude_deg, longitude_deg] = [lat, lon].map(degrees);
     let there_m = vehicle.frame().to_local_m(&Geodetic { latitude_deg, longitude_deg, altitude_m });
     let here_m = vehicle.outputs().position_m;
     MavMessage::TERRAIN_REPORT(TERRAIN_REPORT_DATA {

@@ -12,7 +12,7 @@ use vehicle::world::{Geodetic, heading_deg};
 use vehicle::{Action, Encounter, Threat, Vehicle};
 
 use super::{Service, utm_position};
-use crate::codec::{Frame, Payload, millimetres, scaled_degrees};
+use crate::codec::{Frame, Payload, degrees, millimetres, scaled_degrees};
 use crate::context::Context;
 use crate::envelope::{Destination, Origin};
 use crate::stream::{Build, Component, Stream};
@@ -64,8 +64,8 @@ impl Service for Traffic {
 /// A place in units of 1e-7 degrees and mm, in the local frame; `None` if it is none.
 fn place(vehicle: &Vehicle, [latitude, longitude, altitude]: [i32; 3]) -> Option<Vector3<f64>> {
     let place = Geodetic {
-        latitude_deg: f64::from(latitude) / 1e7,
-        longitude_deg: f64::from(longitude) / 1e7,
+        latitude_deg: degrees(latitude),
+        longitude_deg: degrees(longitude),
         altitude_m: f64::from(altitude) / 1e3,
     };
     (place.is_valid() && (latitude, longitude) != (0, 0)).then(|| vehicle.frame().to_local_m(&place))

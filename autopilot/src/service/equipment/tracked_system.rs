@@ -6,7 +6,7 @@ use vehicle::plan::{Altitude, Look, Place};
 use vehicle::world::Geodetic;
 use vehicle::{Refusal, Vehicle};
 
-use crate::codec::{Command, Frame, id};
+use crate::codec::{Command, Frame, degrees, id};
 use crate::context::Context;
 use crate::envelope::Origin;
 use crate::service::{CommandEntry, Outcome, Progress, Service};
@@ -86,10 +86,9 @@ impl Service for TrackedSystem {
 /// Where a GLOBAL_POSITION_INT is.
 fn place(vehicle: &Vehicle, frame: &Frame) -> Option<Look> {
     let payload = frame.payload();
-    let degrees = |offset: usize| f64::from(payload.i32(offset)) / 1e7;
     let place = Geodetic {
-        latitude_deg: degrees(4),
-        longitude_deg: degrees(8),
+        latitude_deg: degrees(payload.i32(4)),
+        longitude_deg: degrees(payload.i32(8)),
         altitude_m: f64::from(payload.i32(12)) / 1e3,
     };
     if !place.is_valid() {
