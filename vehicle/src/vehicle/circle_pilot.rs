@@ -68,7 +68,7 @@ impl CirclePilot {
 /// The sticks without their dead zones, where they count.
 fn forward_right(situation: &Situation) -> Option<[f64; 2]> {
     let counts = situation.identity.is_ardupilot() && situation.conduct.orbit.sticks_change_it();
-    let sticks = situation.pilot.sticks.filter(|_| counts && !situation.pilot.lost)?;
+    let sticks = situation.pilot.present_sticks().filter(|_| counts)?;
     let live = sticks.live(&situation.conduct.sticks);
     Some([live.forward, live.right])
 }

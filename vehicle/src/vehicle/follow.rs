@@ -218,7 +218,7 @@ impl Follow {
 
     /// PX4's pilot moves the place with the sticks.
     fn heed_sticks(&mut self, target: &TargetMotion, bearing_rad: f64, left_rad: f64, situation: &Situation) {
-        let sticks = situation.pilot.sticks.filter(|_| !situation.pilot.lost).unwrap_or_default();
+        let sticks = situation.pilot.present_sticks().unwrap_or_default();
         let here_m = situation.outputs.position_m;
         let off = (here_m - target.position_m).xy();
         let errors = FollowErrors {

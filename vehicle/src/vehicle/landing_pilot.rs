@@ -47,7 +47,7 @@ pub fn velocity_m_s(situation: &Situation) -> Option<[f64; 2]> {
 }
 
 fn pilot(situation: &Situation) -> Option<super::sticks::Sticks> {
-    situation.pilot.sticks.filter(|_| situation.identity.is_ardupilot() && !situation.pilot.lost)
+    situation.pilot.present_sticks().filter(|_| situation.identity.is_ardupilot())
 }
 
 #[cfg(test)]

@@ -71,7 +71,7 @@ impl PilotTurn {
 
 /// The rate of turn, rad/s, that the pilot asks for and may ask for.
 fn asked_rad_s(situation: &Situation, fastest_rad_s: f64) -> Option<f64> {
-    let sticks = situation.pilot.sticks.filter(|_| !situation.pilot.lost)?;
+    let sticks = situation.pilot.present_sticks()?;
     let rate_rad_s = sticks.turn_rad_s(&situation.conduct.sticks, fastest_rad_s);
     (rate_rad_s != 0.0 && may_turn(situation)).then_some(rate_rad_s)
 }

@@ -39,6 +39,13 @@ pub struct Pilot {
     pub is_calibrating: bool,
 }
 
+impl Pilot {
+    /// The sticks of a pilot who is there: those of one who is lost are what a failsafe makes of them.
+    pub fn present_sticks(&self) -> Option<Sticks> {
+        self.sticks.filter(|_| !self.lost)
+    }
+}
+
 /// Where sticks come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Source {

@@ -252,7 +252,7 @@ impl Vehicle {
             if situation.mode != Mode::SmartReturn {
                 parts.smart_return.watch(situation, proposal);
             }
-            // The wind goes before headings that are asked for, as in ArduPilot.
+            // The pilot goes before the wind, and the wind before headings that are asked for, as in ArduPilot.
             let by_hand = parts.pilot_turn.step(situation, proposal);
             if !by_hand {
                 parts.pilot_turn.end(situation, proposal, &mut parts.turn, &mut parts.mission);

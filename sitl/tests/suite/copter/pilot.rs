@@ -66,16 +66,22 @@ fn the_yaw_stick_turns_on_a_return_and_its_landing() {
     flier.wait_home();
 }
 
+/// Comes down for a second by Land from a height, m, under a parameter.
+fn landing_with(name: &str, value: f64, height_m: f64) -> Flier {
+    let mut flier = Flier::new();
+    flier.set(name, value);
+    flier.take_off(height_m, GUIDED);
+    flier.rc(3, 1500);
+    flier.change_mode(LAND);
+    flier.fly(1.0);
+    flier
+}
+
 /// A full stick moves the place by half a second of the acceleration of missions (WP_ACC), in the frame of the nose; a centred one leaves it.
 #[test]
 fn sticks_move_the_place_of_a_landing() {
     for (moves, least_m, most_m) in [(1.0, 1.0, 8.0), (0.0, 0.0, 0.1)] {
-        let mut flier = Flier::new();
-        flier.set("LAND_REPOSITION", moves);
-        flier.take_off(12.0, GUIDED);
-        flier.rc(3, 1500);
-        flier.change_mode(LAND);
-        flier.fly(1.0);
+        let mut flier = landing_with("LAND_REPOSITION", moves, 12.0);
         flier.rc(2, 1000);
         flier.fly(3.0);
         let fastest_m_s = 0.5 * flier.vehicle().kept_configuration().limits.acceleration_horizontal_m_s2;
@@ -109,12 +115,7 @@ fn sticks_move_the_landing_of_a_mission() {
 #[test]
 fn a_high_throttle_breaks_off_a_landing_if_it_is_to() {
     for (behaviour, mode) in [(0.0, LAND), (2.0, LOITER)] {
-        let mut flier = Flier::new();
-        flier.set("PILOT_THR_BHV", behaviour);
-        flier.take_off(15.0, GUIDED);
-        flier.rc(3, 1500);
-        flier.change_mode(LAND);
-        flier.fly(1.0);
+        let mut flier = landing_with("PILOT_THR_BHV", behaviour, 15.0);
         flier.rc(3, 1750);
         flier.fly(1.0);
         assert_eq!(flier.mode(), mode, "{:?}", flier.bench.texts());
