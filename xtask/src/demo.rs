@@ -22,7 +22,7 @@ pub fn fly(workspace: &Workspace, progress: &Progress) -> Result<(), Failure> {
     // What is missing on the machine is said before the long build.
     let interpreter = python::interpreter()?;
     if !workspace.fmu().is_file() {
-        progress.note("First run: about a minute and a half to the first picture, two and a half minutes in all on two cores; later runs take seconds");
+        progress.note("First run: two to three minutes to the first picture, about five in all on two cores; later runs take seconds");
     }
     let (of_fmu, of_vehicle) = thread::scope(|scope| {
         let python = scope.spawn(|| python::environment(workspace, progress, &interpreter, Packages::Demo));

@@ -120,9 +120,10 @@ def test_default_links_are_px4s(start, connect):
     # A number far from what may run on this machine.
     vehicle = start("--instance", "117", links=())
     assert vehicle.addresses == ["127.0.0.1:18687", "127.0.0.1:14697"]
+    assert connect(vehicle).target == (118, 1)
+    assert vehicle.stop() == 0
     # PX4 has ten ports for programs; the vehicles from the tenth on share the last.
     assert "udpin:127.0.0.1:14549" in vehicle.output()
-    assert connect(vehicle).target == (118, 1)
 
 
 @pytest.mark.parametrize("noise", [b"\xfd" * 600, bytes(range(256)) * 4, b"\xfe\x21\x00\xff"])
