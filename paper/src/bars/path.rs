@@ -1,4 +1,4 @@
-//! Paths in the horizontal plane that are flown at a constant rate of their phase.
+//! Paths that are flown at a constant rate of their phase.
 
 use nalgebra::Vector3;
 use quadrotor::PositionReference;
@@ -15,6 +15,10 @@ pub enum Shape {
     FigureEight,
     /// x = A cos p, y = A sin p.
     Circle,
+    /// The same with z = A/2 sin p.
+    TiltedCircle,
+    /// x = A sin p, z = A/4 sin 2p.
+    UprightEight,
 }
 
 /// A closed path about the origin at height zero.
@@ -29,16 +33,17 @@ pub struct Path {
 }
 
 impl Path {
-    /// North and east with their derivatives, m.
-    pub fn at(&self, time_s: f64) -> [Taylor; 2] {
+    /// North, east and down with their derivatives, m.
+    pub fn at(&self, time_s: f64) -> [Taylor; 3] {
+        let (size_m, level) = (self.size_m, Taylor::line(0.0, 0.0));
         let phase = self.phase(time_s);
         let (sine, cosine) = phase.sine_and_cosine();
+        let double = || (phase * 2.0).sine_and_cosine().0;
         match self.shape {
-            Shape::FigureEight => {
-                let (double, _) = (phase * 2.0).sine_and_cosine();
-                [sine * self.size_m, double * (self.size_m / 2.0)]
-            }
-            Shape::Circle => [cosine * self.size_m, sine * self.size_m],
+            Shape::FigureEight => [sine * size_m, double() * (size_m / 2.0), level],
+            Shape::Circle => [cosine * size_m, sine * size_m, level],
+            Shape::TiltedCircle => [cosine * size_m, sine * size_m, sine * (size_m / 2.0)],
+            Shape::UprightEight => [sine * size_m, level, double() * (size_m / 4.0)],
         }
     }
 
@@ -65,8 +70,7 @@ impl Path {
 
     /// A derivative of the position in NED, m, s.
     pub fn derivative(&self, time_s: f64, order: usize) -> Vector3<f64> {
-        let [north, east] = self.at(time_s);
-        Vector3::new(north.derivative(order), east.derivative(order), 0.0)
+        Vector3::from(self.at(time_s).map(|axis| axis.derivative(order)))
     }
 
     /// The point of the trajectory; the heading is north.
@@ -83,6 +87,8 @@ impl Path {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector3;
+
     use super::{Path, START_S, Shape};
 
     fn eight(rate_rad_s: f64) -> Path {
@@ -103,8 +109,8 @@ mod tests {
     /// Central differences of each derivative give the next one, also while the path starts.
     #[test]
     fn each_derivative_is_that_of_the_one_before() {
-        let circle = Path { shape: Shape::Circle, size_m: 4.0, rate_rad_s: 1.2 };
-        for path in [eight(0.85), circle] {
+        let with = |shape| Path { shape, size_m: 4.0, rate_rad_s: 1.2 };
+        for path in [eight(0.85), with(Shape::Circle), with(Shape::TiltedCircle), with(Shape::UprightEight)] {
             for time_s in [0.3, 2.5, 4.9, 5.5, 17.0] {
                 for order in 0..4 {
                     let ahead = path.derivative(time_s + 1e-4, order);
@@ -114,6 +120,20 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A ω² and A ω² are the largest accelerations north and up of an upright eight; a tilted circle rises by half of what it is wide.
+    #[test]
+    fn upright_paths_climb_as_they_should() {
+        let with = |shape| Path { shape, size_m: 4.0, rate_rad_s: 1.5 };
+        let largest = |path: Path, order: usize| {
+            let each = (0..10_000).map(|step| path.derivative(START_S + f64::from(step) * 1e-3, order).abs());
+            each.fold(Vector3::zeros(), |largest, each| largest.sup(&each))
+        };
+        let eight = largest(with(Shape::UprightEight), 2);
+        assert!((eight - Vector3::new(9.0, 0.0, 9.0)).norm() < 1e-3, "{eight}");
+        let circle = largest(with(Shape::TiltedCircle), 0);
+        assert!((circle - Vector3::new(4.0, 4.0, 2.0)).norm() < 1e-3, "{circle}");
     }
 
     #[test]

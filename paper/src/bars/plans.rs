@@ -36,14 +36,17 @@ const STEEP_PATHS: [(Shape, f64, f64); 5] = [
     (Shape::FigureEight, 1.0, 3.3),
     (Shape::Circle, 8.0, 1.6),
 ];
-/// Paths beyond the default limits, and the first within them by 2°.
-const FAST_PATHS: [(Shape, f64, f64); 6] = [
+/// Paths beyond the default limits, and the first within them by 2°. Those that climb need more thrust, or less, than there is.
+const FAST_PATHS: [(Shape, f64, f64); 9] = [
     (Shape::FigureEight, 6.0, 0.7),
     (Shape::FigureEight, 6.0, 0.85),
     (Shape::FigureEight, 6.0, 1.2),
     (Shape::FigureEight, 3.0, 1.2),
     (Shape::FigureEight, 3.0, 2.0),
     (Shape::Circle, 4.0, 1.5),
+    (Shape::TiltedCircle, 3.0, 1.5),
+    (Shape::UprightEight, 4.0, 1.2),
+    (Shape::UprightEight, 4.0, 2.0),
 ];
 /// Paths that a steady force takes beyond the default limits.
 const PUSHED_PATHS: [(Shape, f64, f64); 2] = [(Shape::FigureEight, 6.0, 0.6), (Shape::Circle, 4.0, 1.1)];
@@ -135,6 +138,8 @@ fn path_name(path: &Path) -> String {
     let shape = match path.shape {
         Shape::FigureEight => "figure-eight",
         Shape::Circle => "circle",
+        Shape::TiltedCircle => "tilted circle",
+        Shape::UprightEight => "upright figure-eight",
     };
     format!("{shape} of {} m at {} rad/s", path.size_m, path.rate_rad_s)
 }

@@ -1,4 +1,4 @@
-//! The way that is followed where nobody can lean as far as the reference.
+//! The way that is followed where nobody can lean as far as the reference, or has as much or as little thrust.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -18,15 +18,16 @@ const RELEASED_US: u64 = 2_000_000;
 
 /// How the way that is followed differs from its reference.
 ///
-/// A reference that leans farther than the limits allow cannot be followed. Feedback that pulled towards it with all of the thrust would
-/// pull against its turns, and end up metres away on the other side. Position, velocity and acceleration give way together:
+/// A reference that leans farther than the limits allow, or asks for more thrust than they give or for less, cannot be followed. Feedback
+/// that pulled towards it with all of the thrust would pull against its turns, and end up metres away on the other side. Position, velocity
+/// and acceleration give way together:
 ///
 /// ```text
 /// δ̈ = sat(r̈ − 2ζω δ̇ − ω² δ) − r̈
 /// ```
 ///
-/// with the offset δ from the reference r, and sat as in [`RequiredThrust::within_lean`]. There is none where the limits allow the
-/// reference. Only the horizontal motion gives way.
+/// with the offset δ from the reference r, and sat as in [`RequiredThrust::within`]. There is none where the limits allow the
+/// reference.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct FollowedWay {
     /// `None` while the reference is followed itself.
@@ -59,7 +60,7 @@ impl FollowedWay {
         (reference, body): (&PositionReference, &RigidBody),
         time_us: u64,
     ) -> Option<PositionReference> {
-        let is_beyond = RequiredThrust::is_beyond_lean(configuration, reference);
+        let is_beyond = RequiredThrust::is_beyond(configuration, reference);
         let mut offset = match self.offset {
             None if is_beyond => Offset::none(time_us),
             None => return None,
@@ -101,13 +102,9 @@ impl Offset {
         let position = self.position_m + (v + (a / 2.0 + j * (t / 6.0)) * t) * t;
         let velocity = v + (a + j * (t / 2.0)) * t;
         let share = (YIELDING_1_S * t).min(1.0);
-        let nearer = |offset: Vector3<f64>, flown: Vector3<f64>| {
-            let horizontal = offset.xy().lerp(&flown.xy(), share);
-            Vector3::new(horizontal.x, horizontal.y, 0.0)
-        };
         Self {
-            position_m: nearer(position, body.position_m - reference.position_m),
-            velocity_m_s: nearer(velocity, body.velocity_m_s - reference.velocity_m_s),
+            position_m: position.lerp(&(body.position_m - reference.position_m), share),
+            velocity_m_s: velocity.lerp(&(body.velocity_m_s - reference.velocity_m_s), share),
             time_us,
             ..*self
         }
@@ -130,14 +127,14 @@ impl Offset {
             jerk_m_s3: Vector3::zeros(),
             snap_m_s4: Vector3::zeros(),
         };
-        let acceleration = wanted.within_lean(configuration, lean_rad).acceleration_m_s2 - drag(&velocity);
+        let acceleration = wanted.within(configuration, lean_rad).acceleration_m_s2 - drag(&velocity);
         let change = acceleration - reference.acceleration_m_s2;
         wanted.jerk_m_s3 =
             reference.jerk_m_s3 - change * SLOWER - self.velocity_m_s * BACK + drag(&acceleration);
-        let jerk = wanted.within_lean(configuration, lean_rad).jerk_m_s3 - drag(&acceleration);
+        let jerk = wanted.within(configuration, lean_rad).jerk_m_s3 - drag(&acceleration);
         wanted.snap_m_s4 =
             reference.snap_m_s4 - (jerk - reference.jerk_m_s3) * SLOWER - change * BACK + drag(&jerk);
-        let snap = wanted.within_lean(configuration, lean_rad).snap_m_s4 - drag(&jerk);
+        let snap = wanted.within(configuration, lean_rad).snap_m_s4 - drag(&jerk);
         PositionReference {
             position_m: reference.position_m + self.position_m,
             velocity_m_s: velocity,

@@ -3,15 +3,20 @@
 use nalgebra::{Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::control::required_thrust::RequiredThrust;
+use crate::control::required_thrust::{RequiredThrust, level_range};
 use crate::{Configuration, GRAVITY_M_S2, PositionReference, commanded_tilt_rad};
 
 /// How many times the limits of lean, tilt rate and tilt acceleration are followed as they are asked for: feedback and
-/// [`FollowedWay`](crate::control::followed_way::FollowedWay) do with peaks.
+/// [`FollowedWay`](crate::control::followed_way::FollowedWay) do with peaks. Of what the thrust allows up and down no more is followed: more
+/// on one side than on the other would push the vehicle to that side.
 const FOLLOWED: f64 = 1.3;
 /// Share of the angular acceleration that the rotors have in hover which is followed, whatever the limits allow: feedback that has none
 /// left turns the vehicle over.
 const OF_AVAILABLE: f64 = 0.9;
+/// The largest acceleration down that is followed, as a share of gravity: what thrust is left turns the vehicle.
+const FALLEN: f64 = 0.8;
+/// Less than this, m/s², is not divided by.
+const LEAST_M_S2: f64 = 1e-3;
 /// Rates, 1/s, at which what is asked for counts and is forgotten: what lasts for less than a second is no way.
 const NOTICED_1_S: f64 = 1.0;
 const FORGOTTEN_1_S: f64 = 0.3;
@@ -28,16 +33,16 @@ const MOST_ASKED: f64 = 20.0;
 /// The longest step of time, s; after a longer one the way goes on from there.
 const STEP_S: f64 = 0.1;
 
-/// What is followed of a reference that asks for far more than the limits of lean, tilt rate and tilt acceleration: a way of the same
-/// shape, narrowed about its middle to a share κ of its size. The offset δ from the reference r is
+/// What is followed of a reference that asks for far more than the limits of lean, tilt rate and tilt acceleration, or of the thrust: a way of
+/// the same shape, narrowed about its middle to a share κ of its size. The offset δ from the reference r is
 ///
 /// ```text
 /// δ = (s + 3ω) x,  (s + ω)³ x = −(1 − κ) r̈
 /// ```
 ///
 /// κ is such that what is followed asks for about [`FOLLOWED`] times the limits, and for less than the rotors can turn the vehicle. δ is −(1 − κ) r of motions that are fast against ω, and nothing of a
-/// constant velocity. It is bounded as r is, whatever κ does: no feedback has to win over a saturation. Only the horizontal motion is
-/// narrowed.
+/// constant velocity. It is bounded as r is, whatever κ does: no feedback has to win over a saturation. The horizontal motion and the
+/// vertical one have a share each.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct NarrowedWay {
     /// `None` while the reference is followed itself.
@@ -46,12 +51,12 @@ pub(crate) struct NarrowedWay {
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Narrowing {
-    /// Size of what was asked for lately as a multiple of what is followed as it is, of the acceleration and its two derivatives.
-    asked: f64,
-    /// κ and its derivatives.
-    share: [f64; 3],
+    /// Size of what was asked for lately as a multiple of what is followed as it is, of the horizontal motion and of the vertical one.
+    asked: Vector2<f64>,
+    /// κ of the horizontal motion and of the vertical one, and its derivatives.
+    share: [Vector2<f64>; 3],
     /// x and its derivatives, up to the fourth.
-    filter: [Vector2<f64>; 5],
+    filter: [Vector3<f64>; 5],
     time_us: u64,
 }
 
@@ -69,9 +74,10 @@ impl NarrowedWay {
             self.narrowing = None;
             return None;
         }
-        let asked = asked(configuration, available_rad_s2, reference);
+        let vertical_share = self.narrowing.map_or(1.0, |narrowing| narrowing.share[0].y);
+        let asked = asked(configuration, available_rad_s2, reference, vertical_share);
         let mut narrowing = match self.narrowing {
-            None if asked > 1.0 => Narrowing::none(time_us),
+            None if asked.max() > 1.0 => Narrowing::none(time_us),
             None => return None,
             Some(narrowing) => narrowing.after(asked, time_us),
         };
@@ -79,44 +85,66 @@ impl NarrowedWay {
         let way = narrowing.beside(reference);
         let away_m = (way.position_m - reference.position_m).norm();
         let apart_m_s = (way.velocity_m_s - reference.velocity_m_s).norm();
-        let ends = narrowing.asked <= 1.0 && asked <= 1.0 && away_m < NEAR_M && apart_m_s < NEAR_M_S;
+        let ends =
+            narrowing.asked.max() <= 1.0 && asked.max() <= 1.0 && away_m < NEAR_M && apart_m_s < NEAR_M_S;
         self.narrowing = (!ends && away_m.is_finite()).then_some(narrowing);
         self.narrowing.map(|_| way)
     }
 }
 
-/// The largest multiple of what is followed as it is that a reference asks for.
-fn asked(configuration: &Configuration, available_rad_s2: f64, reference: &PositionReference) -> f64 {
-    let whole = RequiredThrust::whole(configuration, reference);
+/// The largest multiples of what is followed as it is that a reference asks for, horizontally and vertically. Horizontally it is what it asks
+/// for beside the share of its vertical motion that is followed.
+fn asked(
+    configuration: &Configuration,
+    available_rad_s2: f64,
+    reference: &PositionReference,
+    vertical_share: f64,
+) -> Vector2<f64> {
     let limits = &configuration.limits;
+    let (up_m_s2, down_m_s2) = level_range(configuration);
+    let mut whole = RequiredThrust::whole(configuration, reference);
+    let vertical_m_s2 = whole.acceleration_m_s2.z;
+    let followed_m_s2 = if vertical_m_s2 > 0.0 { down_m_s2.min(FALLEN * GRAVITY_M_S2) } else { -up_m_s2 };
+    whole.acceleration_m_s2.z *= vertical_share;
+    let whole = whole.within_thrust(configuration);
+    let thrust_m_s2 = GRAVITY_M_S2 - whole.acceleration_m_s2.z;
     let lean_m_s2 =
-        FOLLOWED * whole.most_horizontal_m_s2(configuration, commanded_tilt_rad(configuration)).max(1e-3);
-    let rate_rad_s = FOLLOWED * limits.tilt_rate_rad_s;
+        whole.most_horizontal_m_s2(configuration, commanded_tilt_rad(configuration)).max(LEAST_M_S2);
     let acceleration_rad_s2 =
         (FOLLOWED * limits.tilt_acceleration_rad_s2).min(OF_AVAILABLE * available_rad_s2);
-    let lean = whole.acceleration_m_s2.xy().norm() / lean_m_s2;
-    let rate = whole.jerk_m_s3.xy().norm() / (GRAVITY_M_S2 * rate_rad_s);
-    let acceleration = whole.snap_m_s4.xy().norm() / (GRAVITY_M_S2 * acceleration_rad_s2);
-    lean.max(rate).max(acceleration).min(MOST_ASKED)
+    let lean = whole.acceleration_m_s2.xy().norm() / (FOLLOWED * lean_m_s2);
+    let rate = whole.jerk_m_s3.xy().norm() / (thrust_m_s2 * FOLLOWED * limits.tilt_rate_rad_s);
+    let acceleration = whole.snap_m_s4.xy().norm() / (thrust_m_s2 * acceleration_rad_s2);
+    let horizontal = lean.max(rate).max(acceleration);
+    let vertical = vertical_m_s2.abs() / followed_m_s2.max(LEAST_M_S2);
+    Vector2::new(horizontal, vertical).map(|asked| asked.min(MOST_ASKED))
+}
+
+/// Of the horizontal motion for north and east, of the vertical one for down.
+fn each(of: &Vector2<f64>) -> Vector3<f64> {
+    Vector3::new(of.x, of.x, of.y)
 }
 
 impl Narrowing {
     fn none(time_us: u64) -> Self {
-        Self { asked: 1.0, share: [1.0, 0.0, 0.0], filter: [Vector2::zeros(); 5], time_us }
+        let (none, whole) = (Vector2::zeros(), Vector2::repeat(1.0));
+        Self { asked: whole, share: [whole, none, none], filter: [Vector3::zeros(); 5], time_us }
     }
 
     /// Later, when so much is asked for.
-    fn after(&self, asked: f64, time_us: u64) -> Self {
+    fn after(&self, asked: Vector2<f64>, time_us: u64) -> Self {
         let t = (time_us.saturating_sub(self.time_us) as f64 / 1e6).min(STEP_S);
-        let rate_1_s = if asked > self.asked { NOTICED_1_S } else { FORGOTTEN_1_S };
-        let asked = self.asked + (asked - self.asked) * (rate_1_s * t);
+        let asked = self.asked.zip_map(&asked, |before, now| {
+            let rate_1_s = if now > before { NOTICED_1_S } else { FORGOTTEN_1_S };
+            before + (now - before) * (rate_1_s * t)
+        });
         let [share, rate, bend] = self.share;
         let (share, rate) = (share + (rate + bend * (t / 2.0)) * t, rate + bend * t);
-        let wanted = 1.0 / asked.max(1.0);
+        let wanted = asked.map(|asked| 1.0 / asked.max(1.0));
         let [x0, x1, x2, x3, x4] = self.filter;
         Self {
             asked,
-            share: [share, rate, SHARE_1_S * (SHARE_1_S * (wanted - share) - 2.0 * rate)],
+            share: [share, rate, ((wanted - share) * SHARE_1_S - rate * 2.0) * SHARE_1_S],
             filter: [
                 x0 + (x1 + (x2 / 2.0 + (x3 / 6.0 + x4 * (t / 24.0)) * t) * t) * t,
                 x1 + (x2 + (x3 / 2.0 + x4 * (t / 6.0)) * t) * t,
@@ -138,12 +166,15 @@ impl Narrowing {
     }
 
     /// −(1 − κ) r̈ and its two derivatives.
-    fn narrowed_by(&self, reference: &PositionReference) -> [Vector2<f64>; 3] {
-        let [a, j, s] = [reference.acceleration_m_s2, reference.jerk_m_s3, reference.snap_m_s4]
-            .map(|derivative| derivative.xy());
-        let [share, rate, bend] = self.share;
-        let less = share - 1.0;
-        [a * less, j * less + a * rate, s * less + j * (2.0 * rate) + a * bend]
+    fn narrowed_by(&self, reference: &PositionReference) -> [Vector3<f64>; 3] {
+        let [a, j, s] = [reference.acceleration_m_s2, reference.jerk_m_s3, reference.snap_m_s4];
+        let [share, rate, bend] = self.share.map(|of| each(&of));
+        let less = share - Vector3::repeat(1.0);
+        [
+            a.component_mul(&less),
+            j.component_mul(&less) + a.component_mul(&rate),
+            s.component_mul(&less) + j.component_mul(&rate) * 2.0 + a.component_mul(&bend),
+        ]
     }
 
     /// The narrowed way beside a reference.
@@ -151,15 +182,14 @@ impl Narrowing {
         const W: f64 = MIDDLE_RAD_S;
         let [u, du, ddu] = self.narrowed_by(reference);
         let [x0, x1, x2, x3, _] = self.filter;
-        let with = |whole: &Vector3<f64>, offset: Vector2<f64>| whole + Vector3::new(offset.x, offset.y, 0.0);
         // δ̈ = u − 3ω² ẋ − ω³ x
-        let middle = |fast: Vector2<f64>, slow: Vector2<f64>| fast * (3.0 * W * W) + slow * (W * W * W);
+        let middle = |fast: Vector3<f64>, slow: Vector3<f64>| fast * (3.0 * W * W) + slow * (W * W * W);
         PositionReference {
-            position_m: with(&reference.position_m, x1 + x0 * (3.0 * W)),
-            velocity_m_s: with(&reference.velocity_m_s, x2 + x1 * (3.0 * W)),
-            acceleration_m_s2: with(&reference.acceleration_m_s2, u - middle(x1, x0)),
-            jerk_m_s3: with(&reference.jerk_m_s3, du - middle(x2, x1)),
-            snap_m_s4: with(&reference.snap_m_s4, ddu - middle(x3, x2)),
+            position_m: reference.position_m + x1 + x0 * (3.0 * W),
+            velocity_m_s: reference.velocity_m_s + x2 + x1 * (3.0 * W),
+            acceleration_m_s2: reference.acceleration_m_s2 + u - middle(x1, x0),
+            jerk_m_s3: reference.jerk_m_s3 + du - middle(x2, x1),
+            snap_m_s4: reference.snap_m_s4 + ddu - middle(x3, x2),
             ..*reference
         }
     }
@@ -246,6 +276,40 @@ mod tests {
         // 183 m/s⁴ of 75
         let snap = ways[29_999].snap_m_s4.norm() / (GRAVITY_M_S2 * AVAILABLE_RAD_S2);
         assert!((0.7..1.0).contains(&snap), "{snap}");
+    }
+
+    /// Up and down by 1 m at 4 rad/s takes 16 m/s², of which a thrust of at least 0.6 of the weight leaves 3.9 down, and one of two weights 9.8
+    /// up. A line to the north that the lean allows keeps its size. Followed is what falls no faster, but for the ripple of what was asked for
+    /// lately, and so is not pushed up.
+    #[test]
+    fn the_vertical_motion_is_narrowed_by_itself() {
+        let configuration = Configuration::default();
+        let line = |time_us: u64| {
+            let (up, north) = (circle(4.0, time_us), known_motion::circle(4.0, 1.0, 1e-6 * time_us as f64));
+            let along = |up: Vector3<f64>, north: Vector3<f64>| Vector3::new(north.x, 0.0, up.x / 4.0);
+            PositionReference {
+                velocity_m_s: along(up.velocity_m_s, north.velocity_m_s),
+                acceleration_m_s2: along(up.acceleration_m_s2, north.acceleration_m_s2),
+                jerk_m_s3: along(up.jerk_m_s3, north.jerk_m_s3),
+                snap_m_s4: along(up.snap_m_s4, north.snap_m_s4),
+                ..PositionReference::goal(along(up.position_m, north.position_m).into(), 0.0)
+            }
+        };
+        let mut way = NarrowedWay::default();
+        let (mut down_m_s2, mut up_m_s2, mut aside_m) = (0.0_f64, 0.0_f64, 0.0_f64);
+        for step in 0..30_000 {
+            let (time_us, reference) = (step * STEP_US, line(step * STEP_US));
+            let followed =
+                way.follow(&configuration, AVAILABLE_RAD_S2, &reference, time_us).unwrap_or(reference);
+            if step > 20_000 {
+                aside_m = aside_m.max((followed.position_m - reference.position_m).x.abs());
+                down_m_s2 = down_m_s2.max(followed.acceleration_m_s2.z);
+                up_m_s2 = up_m_s2.max(-followed.acceleration_m_s2.z);
+            }
+        }
+        // What was asked for while the vertical motion still took all of the thrust is forgotten.
+        assert!(aside_m < 0.01, "{aside_m}");
+        assert!((3.9..6.5).contains(&down_m_s2) && (3.9..6.5).contains(&up_m_s2), "{down_m_s2} {up_m_s2}");
     }
 
     #[test]

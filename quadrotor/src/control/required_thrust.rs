@@ -2,16 +2,17 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use crate::control::cascade::most_horizontal;
-use crate::design::controller_limits::{holding_horizontal_m_s2, reference_tilt_rad};
-use crate::{Configuration, PositionReference};
+use crate::control::cascade::{most_horizontal, vertical_range};
+use crate::design::controller_limits::{LEAST_HORIZONTAL_M_S2, holding_horizontal_m_s2, reference_tilt_rad};
+use crate::{Configuration, GRAVITY_M_S2, PositionReference};
 
 /// A horizontal acceleration of less, m/s², has no direction: what it turns with would have no bounds.
 const NOTHING_M_S2: f64 = 1e-6;
 
 /// Acceleration that thrust and gravity must make for a reference to be followed against the drag, and how it changes, NED. A
-/// reference that leans farther than the limits allow requires the largest lean in its direction, and moves as that does: feedback
-/// would otherwise have to cancel a motion of the attitude that nobody can follow.
+/// reference that asks for more than the limits allow requires the most that they do, and moves as that does: no more thrust than there
+/// is, up and down, and beside it the largest lean in its direction. Feedback would otherwise have to cancel a motion of the attitude that
+/// nobody can follow; where a thrust points that is nearly nothing, or down, it would turn the vehicle over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RequiredThrust {
     /// m/s².
@@ -23,14 +24,17 @@ pub(crate) struct RequiredThrust {
 }
 
 impl RequiredThrust {
-    /// Of a reference: a + D v and its derivatives, shortened to a largest lean, rad.
+    /// Of a reference: a + D v and its derivatives, within the thrust and a largest lean, rad.
     pub(crate) fn of(configuration: &Configuration, reference: &PositionReference, lean_rad: f64) -> Self {
-        Self::whole(configuration, reference).within_lean(configuration, lean_rad)
+        Self::whole(configuration, reference).within(configuration, lean_rad)
     }
 
-    /// Whether a reference leans farther than can be followed.
-    pub(crate) fn is_beyond_lean(configuration: &Configuration, reference: &PositionReference) -> bool {
+    /// Whether a reference asks for more thrust, or less, than there is, or leans farther than can be followed.
+    pub(crate) fn is_beyond(configuration: &Configuration, reference: &PositionReference) -> bool {
         let whole = Self::whole(configuration, reference);
+        if whole.within_thrust(configuration) != whole {
+            return true;
+        }
         let horizontal_m_s2 = whole.acceleration_m_s2.xy().norm();
         let lean_rad = reference_tilt_rad(configuration);
         horizontal_m_s2 > NOTHING_M_S2
@@ -48,36 +52,73 @@ impl RequiredThrust {
         }
     }
 
-    /// Shortened to a largest lean, rad.
-    pub(crate) fn within_lean(&self, configuration: &Configuration, lean_rad: f64) -> Self {
-        self.leaning_at_most(|| self.most_horizontal_m_s2(configuration, lean_rad))
+    /// Within the thrust and a largest lean, rad.
+    pub(crate) fn within(&self, configuration: &Configuration, lean_rad: f64) -> Self {
+        let within = self.within_thrust(configuration);
+        within.leaning_at_most(|| within.most_horizontal(configuration, lean_rad))
+    }
+
+    /// Within the vertical accelerations that the thrust gives a level vehicle.
+    pub(crate) fn within_thrust(&self, configuration: &Configuration) -> Self {
+        let (up, down) = level_range(configuration);
+        let vertical_m_s2 = self.acceleration_m_s2.z.clamp(up, down);
+        if vertical_m_s2 == self.acceleration_m_s2.z {
+            return *self;
+        }
+        let with = |whole: &Vector3<f64>, vertical: f64| Vector3::new(whole.x, whole.y, vertical);
+        Self {
+            acceleration_m_s2: with(&self.acceleration_m_s2, vertical_m_s2),
+            jerk_m_s3: with(&self.jerk_m_s3, 0.0),
+            snap_m_s4: with(&self.snap_m_s4, 0.0),
+        }
     }
 
     /// The largest horizontal acceleration beside the vertical one, under a lean in rad, m/s².
     pub(crate) fn most_horizontal_m_s2(&self, configuration: &Configuration, lean_rad: f64) -> f64 {
-        let vertical_m_s2 = self.acceleration_m_s2.z;
-        most_horizontal(vertical_m_s2, lean_rad).min(holding_horizontal_m_s2(configuration, -vertical_m_s2))
+        self.most_horizontal(configuration, lean_rad)[0]
     }
 
-    /// The same with a horizontal acceleration of at most `most_m_s2`, which is only asked for if there is one:
+    /// The same with its two derivatives:
+    ///
+    /// ```text
+    /// w = g − a_z
+    /// m = w tan(lean),  m′ = w′ tan(lean),  m″ = w″ tan(lean)         as far as the lean allows,
+    /// m² = s² − w²,  m m′ = −w w′,  m m″ = −w w″ − w′² − m′²         as far as the thrust s does
+    /// ```
+    fn most_horizontal(&self, configuration: &Configuration, lean_rad: f64) -> [f64; 3] {
+        let up = [GRAVITY_M_S2 - self.acceleration_m_s2.z, -self.jerk_m_s3.z, -self.snap_m_s4.z];
+        let leant = most_horizontal(self.acceleration_m_s2.z, lean_rad);
+        let held = holding_horizontal_m_s2(configuration, -self.acceleration_m_s2.z);
+        if leant <= held { self.leaning_as_now(leant) } else { held_beside(held, up) }
+    }
+
+    /// A horizontal acceleration of `most_m_s2` that leans as far as it does now, with its two derivatives.
+    pub(crate) fn leaning_as_now(&self, most_m_s2: f64) -> [f64; 3] {
+        let up_m_s2 = GRAVITY_M_S2 - self.acceleration_m_s2.z;
+        let tangent = if up_m_s2 > NOTHING_M_S2 { most_m_s2 / up_m_s2 } else { 0.0 };
+        [most_m_s2, -tangent * self.jerk_m_s3.z, -tangent * self.snap_m_s4.z]
+    }
+
+    /// The same with a horizontal acceleration of at most m, which is only asked for, with its derivatives, if there is one:
     ///
     /// ```text
     /// a = r n,  r′ = n·j,  n′ = (j − r′ n)/r,  r″ = n·s + r |n′|²,  n″ = (s − 2 r′ n′ − r″ n)/r
+    /// (m n)′ = m′ n + m n′,  (m n)″ = m″ n + 2 m′ n′ + m n″
     /// ```
-    pub(crate) fn leaning_at_most(&self, most_m_s2: impl FnOnce() -> f64) -> Self {
+    pub(crate) fn leaning_at_most(&self, most: impl FnOnce() -> [f64; 3]) -> Self {
         let [a, j, s] = [self.acceleration_m_s2, self.jerk_m_s3, self.snap_m_s4].map(|part| part.xy());
         // Mostly nothing is cut off, which squares tell.
         let squared = a.norm_squared();
         if squared <= NOTHING_M_S2 * NOTHING_M_S2 {
             return *self;
         }
-        let most_m_s2 = most_m_s2();
-        if squared <= most_m_s2 * most_m_s2 {
+        let [m, m_rate, m_bend] = most();
+        if squared <= m * m {
             return *self;
         }
         let r = libm::hypot(a.x, a.y);
         // A direction that nothing is left of does not turn.
-        if !r.is_finite() || r <= most_m_s2 {
+        if !r.is_finite() || r <= m {
             return *self;
         }
         let n = a / r;
@@ -89,11 +130,28 @@ impl RequiredThrust {
             Vector3::new(horizontal.x, horizontal.y, whole.z)
         };
         Self {
-            acceleration_m_s2: with(n * most_m_s2, &self.acceleration_m_s2),
-            jerk_m_s3: with(turns * most_m_s2, &self.jerk_m_s3),
-            snap_m_s4: with(twists * most_m_s2, &self.snap_m_s4),
+            acceleration_m_s2: with(n * m, &self.acceleration_m_s2),
+            jerk_m_s3: with(n * m_rate + turns * m, &self.jerk_m_s3),
+            snap_m_s4: with(n * m_bend + turns * (2.0 * m_rate) + twists * m, &self.snap_m_s4),
         }
     }
+}
+
+/// Vertical accelerations, m/s², that the thrust gives a level vehicle, up to down. Holding the height is among them, whatever mass is believed
+/// in.
+pub(crate) fn level_range(configuration: &Configuration) -> (f64, f64) {
+    let (up, down) = vertical_range(configuration, 1.0);
+    (up.min(0.0), down.max(0.0))
+}
+
+/// The largest horizontal acceleration m beside an acceleration w up, both m/s², with its two derivatives. The least that is commanded
+/// however weak the rotors are does not change.
+fn held_beside(m: f64, [w, w_rate, w_bend]: [f64; 3]) -> [f64; 3] {
+    if m <= LEAST_HORIZONTAL_M_S2 {
+        return [m, 0.0, 0.0];
+    }
+    let rate = -w * w_rate / m;
+    [m, rate, -(w * w_bend + w_rate * w_rate + rate * rate) / m]
 }
 
 #[cfg(test)]
@@ -104,14 +162,19 @@ pub(crate) mod tests {
     use crate::guidance::known_motion::motion;
     use crate::{Configuration, PositionReference, commanded_tilt_rad};
 
-    /// A spiral whose acceleration grows and turns, with its derivatives by the product rule in the complex plane: b e^{ct}.
-    fn spiral(time_s: f64) -> PositionReference {
+    /// A spiral whose acceleration grows and turns, with its derivatives by the product rule in the complex plane: b e^{ct}. Its vertical
+    /// part is `climb` times as large.
+    fn rising_spiral(time_s: f64, climb: f64) -> PositionReference {
         let (growth, turn) = (0.3, 1.7);
         motion(|order| {
             let size = 6.0 * libm::exp(growth * time_s) * libm::hypot(growth, turn).powi(order);
             let angle = turn * time_s + f64::from(order) * libm::atan2(turn, growth);
-            Vector3::new(size * libm::cos(angle), size * libm::sin(angle), 0.0)
+            Vector3::new(size * libm::cos(angle), size * libm::sin(angle), climb * size * libm::cos(angle))
         })
+    }
+
+    fn spiral(time_s: f64) -> PositionReference {
+        rising_spiral(time_s, 0.0)
     }
 
     /// A vehicle with a drag of its own along each axis.
@@ -121,19 +184,57 @@ pub(crate) mod tests {
         configuration
     }
 
-    /// Central differences of each part give the next one: of a reference within the lean against its drag, and of one beyond.
+    /// Central differences of each part give the next one: of a reference within the lean against its drag, of ones beyond that climb and
+    /// fall, with more thrust than there is, and with too little of it for the lean.
     #[test]
     fn each_part_is_the_derivative_of_the_one_before() {
         const H: f64 = 1e-4;
-        let of =
-            |time_s: f64| RequiredThrust::of(&dragged(), &spiral(time_s), commanded_tilt_rad(&dragged()));
-        for time_s in [-5.0, -4.0, 0.0, 1.0] {
-            let [before, now, after] = [of(time_s - H), of(time_s), of(time_s + H)];
-            let slope =
-                |part: fn(&RequiredThrust) -> Vector3<f64>| (part(&after) - part(&before)) / (2.0 * H);
-            let jerk = slope(|required| required.acceleration_m_s2) - now.jerk_m_s3;
-            let snap = slope(|required| required.jerk_m_s3) - now.snap_m_s4;
-            assert!(jerk.norm() < 1e-5 && snap.norm() < 1e-5, "{time_s}: {jerk} {snap}");
+        let mut weak = dragged();
+        weak.limits.thrust_max = 1.1;
+        let (mut within, mut leant, mut cut, mut held) = (0, 0, 0, 0);
+        for (configuration, climb) in [(dragged(), 0.0), (dragged(), 0.3), (dragged(), -0.6), (weak, 0.05)] {
+            let lean_rad = commanded_tilt_rad(&configuration);
+            let of =
+                |time_s: f64| RequiredThrust::of(&configuration, &rising_spiral(time_s, climb), lean_rad);
+            for time_s in [-5.0, -4.0, -2.5, -1.7, -1.1, 0.0, 1.0] {
+                let [before, now, after] = [of(time_s - H), of(time_s), of(time_s + H)];
+                let whole = RequiredThrust::whole(&configuration, &rising_spiral(time_s, climb));
+                let up_m_s2 = crate::GRAVITY_M_S2 - now.acceleration_m_s2.z;
+                let tangent = now.acceleration_m_s2.xy().norm() / up_m_s2;
+                let leans_most = (tangent - libm::tan(lean_rad)).abs() < 1e-9;
+                within += u32::from(now == whole);
+                leant += u32::from(leans_most && now.jerk_m_s3.z != 0.0);
+                cut += u32::from(now.acceleration_m_s2.z != whole.acceleration_m_s2.z);
+                held += u32::from(now != whole && !leans_most && now.jerk_m_s3.z != 0.0);
+                let slope =
+                    |part: fn(&RequiredThrust) -> Vector3<f64>| (part(&after) - part(&before)) / (2.0 * H);
+                let jerk = slope(|required| required.acceleration_m_s2) - now.jerk_m_s3;
+                let snap = slope(|required| required.jerk_m_s3) - now.snap_m_s4;
+                assert!(jerk.norm() < 1e-5 && snap.norm() < 1e-4, "{climb} {time_s}: {jerk} {snap}");
+            }
+        }
+        assert!(within > 3 && leant > 3 && cut > 1 && held > 3, "{within} {leant} {cut} {held}");
+    }
+
+    /// However much is asked for up or down, the thrust is within its limits, and so is the lean.
+    #[test]
+    fn the_thrust_is_within_its_limits() {
+        let configuration = Configuration::default();
+        for vertical_m_s2 in [-1e300, -30.0, 8.0, 30.0, 1e300] {
+            let reference = PositionReference {
+                acceleration_m_s2: Vector3::new(20.0, -10.0, vertical_m_s2),
+                jerk_m_s3: Vector3::new(1.0, 2.0, 3.0),
+                snap_m_s4: Vector3::new(4.0, 5.0, 6.0),
+                ..PositionReference::goal([0.0; 3], 0.0)
+            };
+            let required = RequiredThrust::of(&configuration, &reference, 0.5);
+            let up_m_s2 = crate::GRAVITY_M_S2 - required.acceleration_m_s2.z;
+            // 0.6 and 2 of the weight
+            let expected = if vertical_m_s2 > 0.0 { 0.6 } else { 2.0 } * crate::GRAVITY_M_S2;
+            assert!((up_m_s2 - expected).abs() < 1e-9, "{up_m_s2}");
+            assert!(required.acceleration_m_s2.xy().norm() <= libm::tan(0.5) * up_m_s2 + 1e-9);
+            assert_eq!((required.jerk_m_s3.z, required.snap_m_s4.z), (0.0, 0.0));
+            assert!(RequiredThrust::is_beyond(&configuration, &reference));
         }
     }
 

@@ -32,7 +32,7 @@ pub(crate) fn least_thrust_n(configuration: &Configuration, upright: f64) -> f64
 /// Thrust, as a share of what would hold the altitude, that a lean leaves for more than holding it.
 const HOLDING_SHARE: f64 = 0.995;
 /// Horizontal acceleration, m/s², that is commanded however weak the rotors are: a lean of 6° costs half a percent of the thrust.
-const LEAST_HORIZONTAL_M_S2: f64 = 1.0;
+pub(crate) const LEAST_HORIZONTAL_M_S2: f64 = 1.0;
 
 /// The largest horizontal acceleration, m/s², beside which the thrust holds the altitude against an estimated acceleration down that
 /// it does not explain, m/s²: |a|² + (g + d)² ≤ (F/m)².
