@@ -1,6 +1,6 @@
 //! Angles and differences of attitudes.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// An angle brought into [−π, π), rad.
 pub(crate) fn wrapped(angle_rad: f64) -> f64 {
@@ -44,25 +44,74 @@ pub(crate) fn attitude_error(
     Vector3::new(tilt_x, tilt_y, turn)
 }
 
-/// The attitude with a heading ψ, rad, whose thrust axis (body up) points against `thrust_axis_down`, a
-/// vector in NED that need not be normalised: the angles φ, θ of `R(φ, θ, ψ) e₃ ∥ thrust_axis_down`.
-pub(crate) fn tilt_angles(thrust_axis_down: &Vector3<f64>, yaw_rad: f64) -> (f64, f64) {
-    let (sine, cosine) = (libm::sin(yaw_rad), libm::cos(yaw_rad));
+/// An angle by its sine and cosine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Angle {
+    pub(crate) sine: f64,
+    pub(crate) cosine: f64,
+}
+
+impl Angle {
+    /// Of an angle, rad.
+    pub(crate) fn new(angle_rad: f64) -> Self {
+        Self { sine: libm::sin(angle_rad), cosine: libm::cos(angle_rad) }
+    }
+
+    /// Within ±π, rad.
+    pub(crate) fn rad(&self) -> f64 {
+        libm::atan2(self.sine, self.cosine)
+    }
+
+    /// Half of the angle within ±π: cos² (α/2) = (1 + cos α)/2, sin² (α/2) = (1 − cos α)/2, sin α = 2 sin (α/2) cos (α/2).
+    fn half(&self) -> Self {
+        let larger = libm::sqrt((1.0 + libm::fabs(self.cosine)) / 2.0);
+        if self.cosine >= 0.0 {
+            Self { sine: self.sine / (2.0 * larger), cosine: larger }
+        } else {
+            Self { sine: larger.copysign(self.sine), cosine: libm::fabs(self.sine) / (2.0 * larger) }
+        }
+    }
+}
+
+/// The attitude of roll φ, pitch θ and yaw ψ (ZYX).
+pub(crate) fn attitude_of(angles: [Angle; 3]) -> UnitQuaternion<f64> {
+    let [roll, pitch, yaw] = angles.map(|angle| angle.half());
+    let (level, tilted) = (roll.cosine * pitch.cosine, roll.sine * pitch.sine);
+    let (rolled, pitched) = (roll.sine * pitch.cosine, roll.cosine * pitch.sine);
+    UnitQuaternion::new_unchecked(Quaternion::new(
+        level * yaw.cosine + tilted * yaw.sine,
+        rolled * yaw.cosine - pitched * yaw.sine,
+        pitched * yaw.cosine + rolled * yaw.sine,
+        level * yaw.sine - tilted * yaw.cosine,
+    ))
+}
+
+/// Roll φ and pitch θ under which the thrust axis (body up) points against `thrust_axis_down`, a unit vector in NED, with a heading ψ:
+/// `R(φ, θ, ψ) e₃ = thrust_axis_down`. φ is within ±π/2.
+pub(crate) fn tilt_angles(thrust_axis_down: &Vector3<f64>, yaw: Angle) -> [Angle; 2] {
+    let Angle { sine, cosine } = yaw;
     // In the axes of the heading: R_z(−ψ) b₃ = [cos φ sin θ, −sin φ, cos φ cos θ]ᵀ
     let x = cosine * thrust_axis_down.x + sine * thrust_axis_down.y;
     let y = -sine * thrust_axis_down.x + cosine * thrust_axis_down.y;
     let z = thrust_axis_down.z;
-    let phi = libm::atan2(-y, libm::hypot(x, z));
-    let theta = libm::atan2(x, z);
-    (phi, theta)
+    let upright = libm::sqrt(x * x + z * z);
+    // Along the lateral axis any pitch will do.
+    let pitch = if upright > 0.0 {
+        Angle { sine: x / upright, cosine: z / upright }
+    } else {
+        Angle { sine: 0.0, cosine: 1.0 }
+    };
+    [Angle { sine: -y, cosine: upright }, pitch]
 }
 
 #[cfg(test)]
 mod tests {
+    use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
     use nalgebra::{UnitQuaternion, Vector3};
     use proptest::prelude::*;
 
-    use super::{attitude_error, tilt_angles, turned, wrapped};
+    use super::{Angle, attitude_error, attitude_of, tilt_angles, turned, wrapped};
 
     fn attitude(phi: f64, theta: f64, psi: f64) -> UnitQuaternion<f64> {
         UnitQuaternion::from_euler_angles(phi, theta, psi)
@@ -101,13 +150,33 @@ mod tests {
 
         #[test]
         fn tilt_angles_point_the_thrust_axis(
-            x in -1.0..1.0, y in -1.0..1.0, z in 0.1..1.0, psi in -3.0..3.0,
+            x in -1.0..1.0, y in -1.0..1.0, z in -1.0..1.0, psi in -9.0..9.0,
         ) {
-            let axis = Vector3::new(x, y, z).normalize();
-            let (phi, theta) = tilt_angles(&axis, psi);
-            let pointed = attitude(phi, theta, psi) * Vector3::z();
+            let (axis, yaw) = (Vector3::new(x, y, z).normalize(), Angle::new(psi));
+            let [roll, pitch] = tilt_angles(&axis, yaw);
+            let pointed = attitude_of([roll, pitch, yaw]) * Vector3::z();
             prop_assert!((pointed - axis).norm() < 1e-12);
+            let of_angles = attitude(roll.rad(), pitch.rad(), psi) * Vector3::z();
+            prop_assert!((of_angles - axis).norm() < 1e-12);
         }
+
+        /// Whole turns aside, and the sign, which means nothing.
+        #[test]
+        fn an_attitude_follows_from_sines_and_cosines(phi in -9.0..9.0, theta in -9.0..9.0, psi in -9.0..9.0) {
+            let (ours, theirs) = (attitude_of([phi, theta, psi].map(Angle::new)), attitude(phi, theta, psi));
+            let apart = (ours.coords - theirs.coords).norm().min((ours.coords + theirs.coords).norm());
+            prop_assert!(apart < 1e-14, "{ours} {theirs}");
+        }
+    }
+
+    #[test]
+    fn an_angle_is_halved_at_its_ends() {
+        for (angle, half) in [(0.0, 0.0), (FRAC_PI_2, FRAC_PI_4), (-FRAC_PI_2, -FRAC_PI_4)] {
+            let Angle { sine, cosine } = Angle::new(angle).half();
+            assert!((sine - half.sin()).abs() < 1e-15 && (cosine - half.cos()).abs() < 1e-15, "{angle}");
+        }
+        let about = Angle { sine: 0.0, cosine: -1.0 }.half();
+        assert_eq!((about.sine, about.cosine), (1.0, 0.0));
     }
 
     /// Half a turn about a horizontal axis: the heading has no meaning there and counts as none.

@@ -63,6 +63,11 @@ pub trait InputSignal {
     fn with<R>(&self, time_us: u64, look: impl FnOnce(&Inputs) -> R) -> R {
         look(&self.at(time_us))
     }
+
+    /// Whether the inputs are the same at all times, so that one look is enough.
+    fn is_constant(&self) -> bool {
+        false
+    }
 }
 
 impl InputSignal for Inputs {
@@ -72,6 +77,10 @@ impl InputSignal for Inputs {
 
     fn with<R>(&self, _time_us: u64, look: impl FnOnce(&Inputs) -> R) -> R {
         look(self)
+    }
+
+    fn is_constant(&self) -> bool {
+        true
     }
 }
 
@@ -102,13 +111,17 @@ impl Inputs {
         inputs
     }
 
-    /// Refuses what is not finite, the reference also while an attitude is flown. The control loop checks what it is asked for
+    /// Whether a control loop that shapes a reference goes on with one under them.
+    pub(crate) fn keep_to_a_shaped_reference(&self) -> bool {
+        let flies_another_law = self.attitude_target.is_some() || self.lost_rotor.is_some();
+        self.armed && !flies_another_law && self.plan.is_none() && self.shaping != Some(false)
+    }
+
+    /// Refuses what is not finite, the reference also while an attitude is flown. The control loop checks what else it is asked for
     /// itself.
     pub(crate) fn check(&self, time_us: u64) -> Result<(), SimulationError> {
-        let flies_attitude = self.attitude_target.is_some() && self.lost_rotor.is_none();
-        let unasked = if flies_attitude { self.reference.not_finite() } else { None };
-        let wrong = if unasked.is_some() {
-            unasked
+        let wrong = if let Some(name) = self.reference.not_finite() {
+            Some(name)
         } else if let Some(name) = self.disturbance.not_finite() {
             Some(name)
         } else if !self.estimate.as_ref().is_none_or(RigidBody::is_possible) {

@@ -205,6 +205,16 @@ impl ControlLoop {
         Ok(self.state.rotor_command_rad_s())
     }
 
+    /// Lets the instant `time_us` pass if there is nothing to do under inputs that ask for a reference as they did before; false if
+    /// there is.
+    pub(crate) fn waits(&mut self, time_us: u64) -> bool {
+        let waits = self.state.next_us() == time_us && self.state.waits();
+        if waits {
+            self.state.wait();
+        }
+        waits
+    }
+
     /// Mass that the controllers go by, kg: as learned in flight, or as configured.
     pub fn believed_mass_kg(&self) -> f64 {
         self.state.believed(&self.design.configuration).believed_mass_kg()

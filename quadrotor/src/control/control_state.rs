@@ -24,6 +24,8 @@ use crate::{
 pub struct ControlState {
     /// The next instant at which it samples, µs.
     next_us: u64,
+    /// The first sample of a controller then or later, µs.
+    sample_us: u64,
     phases: Phases,
     armed: bool,
     /// The law that flew last.
@@ -67,8 +69,10 @@ impl ControlState {
             return Err(ConfigurationError::Measurement);
         }
         let phases = Phases::default();
+        let clocks = phases.clocks(&configuration.controllers);
         Ok(Self {
-            next_us: phases.clocks(&configuration.controllers).first_instant_us(time_us),
+            next_us: clocks.first_instant_us(time_us),
+            sample_us: clocks.first_sample_us(time_us),
             phases,
             armed: inputs.armed,
             law: inputs.target.law(),
@@ -88,6 +92,7 @@ impl ControlState {
         if self.next_us > LATEST_US
             || !self.phases.fit(controllers)
             || !self.clocks(controllers).is_instant(self.next_us)
+            || self.sample_us != self.clocks(controllers).first_sample_us(self.next_us)
         {
             return Err(ConfigurationError::State {
                 reason: "its controllers do not sample when they would",
@@ -130,7 +135,9 @@ impl ControlState {
         } else {
             Phases::default()
         };
-        self.next_us = self.clocks(controllers).first_instant_us(self.next_us);
+        let clocks = self.clocks(controllers);
+        (self.sample_us, self.next_us) =
+            (clocks.first_sample_us(self.next_us), clocks.first_instant_us(self.next_us));
     }
 
     /// Goes on with what was learned by now in place of what was believed before.
@@ -218,17 +225,34 @@ impl ControlState {
         if let Target::WithoutRotor { lost, .. } = inputs.target {
             design.rotor_loss.of(lost)?;
         }
-        let (due, next_us) = self.clocks(&design.configuration.controllers).look(time_us);
+        let (due, sample_us) = if time_us < self.sample_us {
+            (Due::NONE, self.sample_us)
+        } else {
+            self.clocks(&design.configuration.controllers).look(time_us)
+        };
         // A takeover is measured more than once, and may be refused in its midst: only it copies the state, which `then_some` would do
         // at each sample.
         let before = if inputs.armed && self.takes_over(inputs) { Some(*self) } else { None };
         let advanced = self.advance(design, inputs, instruments, (due, time_us));
         match (advanced, before) {
-            (Ok(()), _) => self.next_us = next_us,
+            (Ok(()), _) => {
+                (self.next_us, self.sample_us) = (Clocks::next_instant_us(time_us, sample_us), sample_us);
+            }
             (Err(_), Some(before)) => *self = before,
             (Err(_), None) => {}
         }
         advanced
+    }
+
+    /// Whether nothing but time goes on at its next instant under a reference: no controller samples, and it is shaped already.
+    pub(crate) fn waits(&self) -> bool {
+        let flies_a_reference = self.armed && !self.engage && self.law == ControlLaw::Cascade;
+        self.next_us < self.sample_us && flies_a_reference && self.guidance.is_shaped()
+    }
+
+    /// Goes on to the instant after the next one while it [waits](Self::waits).
+    pub(crate) fn wait(&mut self) {
+        self.next_us = Clocks::next_instant_us(self.next_us, self.sample_us);
     }
 
     /// Takes inputs in, and runs the controllers that are due. An error may leave it half done if it takes over a vehicle; else

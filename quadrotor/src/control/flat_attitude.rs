@@ -19,7 +19,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::attitude::tilt_angles;
+use crate::attitude::{Angle, attitude_of, tilt_angles};
 use crate::guidance::heading::Heading;
 use crate::{GRAVITY_M_S2, PositionReference};
 
@@ -85,20 +85,17 @@ impl FlatAttitude {
         let size_acceleration = down_rate.dot(&first) + down.dot(&second);
         let down_acceleration = (second - down * size_acceleration - down_rate * (2.0 * size_rate)) / divisor;
 
-        let (roll_rad, pitch_rad) = tilt_angles(&down, heading.yaw_rad);
-        let attitude = UnitQuaternion::from_euler_angles(roll_rad, pitch_rad, heading.yaw_rad);
+        let yaw = Angle::new(heading.yaw_rad);
+        let [roll, pitch] = tilt_angles(&down, yaw);
+        let attitude = attitude_of([roll, pitch, yaw]);
         let in_body = attitude.inverse();
-        let turn = Turn {
-            roll: (libm::sin(roll_rad), libm::cos(roll_rad)),
-            pitch: (libm::sin(pitch_rad), libm::cos(pitch_rad)),
-            yaw: (heading.yaw_rate_rad_s, heading.yaw_acceleration_rad_s2),
-        };
+        let turn = Turn { roll, pitch, yaw: (heading.yaw_rate_rad_s, heading.yaw_acceleration_rad_s2) };
         let (body_rate_rad_s, angular_acceleration_rad_s2) =
             turn.of(&(in_body * down_rate), &(in_body * down_acceleration));
         Self {
             attitude,
-            roll_rad,
-            pitch_rad,
+            roll_rad: roll.rad(),
+            pitch_rad: pitch.rad(),
             body_rate_rad_s,
             angular_acceleration_rad_s2,
             thrust_m_s2: size,
@@ -107,17 +104,18 @@ impl FlatAttitude {
     }
 }
 
-/// Sine and cosine of φ and θ, and ψ̇ and ψ̈.
+/// φ, θ, and ψ̇ and ψ̈.
 struct Turn {
-    roll: (f64, f64),
-    pitch: (f64, f64),
+    roll: Angle,
+    pitch: Angle,
     yaw: (f64, f64),
 }
 
 impl Turn {
     /// Body rates and angular accelerations from ḃ₃ and b̈₃ in body axes.
     fn of(&self, down_rate: &Vector3<f64>, down_acceleration: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
-        let ((sin_roll, cos_roll), (sin_pitch, cos_pitch)) = (self.roll, self.pitch);
+        let Angle { sine: sin_roll, cosine: cos_roll } = self.roll;
+        let Angle { sine: sin_pitch, cosine: cos_pitch } = self.pitch;
         let (yaw_rate, yaw_acceleration) = self.yaw;
         // 1/cos φ, which goes to zero with cos φ instead of to infinity.
         let inverse = cos_roll / (cos_roll * cos_roll).max(LEAST_COS_ROLL * LEAST_COS_ROLL);

@@ -52,6 +52,9 @@ pub(crate) struct Due {
 }
 
 impl Due {
+    /// None of them.
+    pub(crate) const NONE: Self = Self { position: false, altitude: false, attitude: false };
+
     pub(crate) fn any(self) -> bool {
         self.position || self.altitude || self.attitude
     }
@@ -114,20 +117,31 @@ impl Clocks {
         self.first_instant_us(time_us) == time_us
     }
 
-    /// Which controllers sample at `time_us`, and the first instant after that.
+    /// Which controllers sample at `time_us`, and the first sample of a controller after that.
     pub(crate) fn look(&self, time_us: u64) -> (Due, u64) {
-        let (_, inputs_us) = Self::INPUTS.look(time_us);
         let (position, position_us) = self.position.look(time_us);
         let (altitude, altitude_us) = self.altitude.look(time_us);
         let (attitude, attitude_us) = self.attitude.look(time_us);
-        let next_us = inputs_us.min(position_us).min(altitude_us).min(attitude_us);
-        (Due { position, altitude, attitude }, next_us)
+        (Due { position, altitude, attitude }, position_us.min(altitude_us).min(attitude_us))
+    }
+
+    /// The first sample of a controller at `time_us` or later.
+    pub(crate) fn first_sample_us(&self, time_us: u64) -> u64 {
+        [self.position, self.altitude, self.attitude]
+            .iter()
+            .map(|clock| clock.first_us(time_us))
+            .fold(u64::MAX, u64::min)
+    }
+
+    /// The instant after `time_us`, if a controller samples next at `sample_us`.
+    pub(crate) fn next_instant_us(time_us: u64, sample_us: u64) -> u64 {
+        let (_, inputs_us) = Self::INPUTS.look(time_us);
+        inputs_us.min(sample_us)
     }
 
     /// The first instant at `time_us` or later.
     pub(crate) fn first_instant_us(&self, time_us: u64) -> u64 {
-        let clocks = [Self::INPUTS, self.position, self.altitude, self.attitude];
-        clocks.iter().map(|clock| clock.first_us(time_us)).fold(u64::MAX, u64::min)
+        Self::INPUTS.first_us(time_us).min(self.first_sample_us(time_us))
     }
 }
 

@@ -7,6 +7,12 @@ use crate::plant::differentiation::real::{Real, constant};
 use crate::{Airframe, External, RigidBody};
 
 impl Airframe {
+    /// Whether the body drags at all.
+    #[inline(always)]
+    pub(crate) fn drags(&self) -> bool {
+        !(vanish(&self.drag_n_s_m) && vanish(&self.body_drag_n_s_m))
+    }
+
     /// Linear drag of a body in a wind, NED, m/s: force, NED, and torque about the centre of mass, FRD.
     ///
     /// f = −C (v − w) − R D Rᵀ (v − w), along the axes of the world and along those of the body: the second term is the drag

@@ -8,11 +8,14 @@ use crate::plant::forces::Forces;
 use crate::plant::ground::{HoldingMargins, cannot_be_held, contact, reach_m};
 #[cfg(feature = "fleet")]
 use crate::plant::likeness::likeness;
+use crate::plant::mass_properties::MassProperties;
 use crate::plant::plant_inputs::{Actuation, PlantInputs};
 use crate::plant::plant_state::PlantState;
 use crate::plant::rotor_fault::goals_rad_s;
 use crate::plant::rotor_forces::{RotorForces, Surroundings};
-use crate::{Airframe, Environment, RotorFault};
+use crate::plant::rotor_map::RotorMap;
+use crate::plant::rotor_spin::RotorLag;
+use crate::{Airframe, Environment, External, RotorFault};
 
 /// The vehicle without its controllers: equations and constants, no state.
 ///
@@ -33,6 +36,9 @@ use crate::{Airframe, Environment, RotorFault};
 pub struct Plant {
     airframe: Airframe,
     ground_plane: bool,
+    mass: MassProperties,
+    rotor_lag: RotorLag,
+    rotor_map: RotorMap,
     /// No foot is farther from the centre of mass.
     reach_m: f64,
     /// Fleets look for plants of a kind at each call.
@@ -55,6 +61,9 @@ impl Plant {
         Self {
             airframe: *airframe,
             ground_plane,
+            mass: MassProperties::new(airframe),
+            rotor_lag: RotorLag::new(airframe),
+            rotor_map: RotorMap::new(airframe),
             reach_m: reach_m(airframe),
             #[cfg(feature = "fleet")]
             likeness: likeness(airframe, ground_plane),
@@ -70,6 +79,11 @@ impl Plant {
     #[cfg(feature = "fleet")]
     pub(crate) fn likeness(&self) -> u64 {
         self.likeness
+    }
+
+    /// Mass and inertia in the equations of motion.
+    pub(crate) fn mass(&self) -> &MassProperties {
+        &self.mass
     }
 
     /// Whether there is ground.
@@ -91,7 +105,7 @@ impl Plant {
     /// Static friction is not in it: on the ground it has sliding friction only, so that a vehicle in a wind creeps.
     /// [`Plant::step`] adds the rule that holds it still.
     pub fn derivative<T: Valued>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> PlantState<T> {
-        self.forces(state, inputs, &mut ByValue).derivative(&self.airframe, state)
+        self.forces(state, inputs, &mut ByValue).derivative(&self.mass, state)
     }
 
     /// All that acts on the plant.
@@ -120,9 +134,12 @@ impl Plant {
         branches: &mut impl Branches<T>,
     ) -> Forces<T> {
         let (airframe, disturbance) = (&self.airframe, &inputs.disturbance);
-        let mut external = airframe.drag(&state.body, &disturbance.wind_m_s);
-        external.force_n += disturbance.force_n;
-        external.torque_n_m += disturbance.torque_n_m;
+        let mut external = External { force_n: disturbance.force_n, torque_n_m: disturbance.torque_n_m };
+        if airframe.drags() {
+            let drag = airframe.drag(&state.body, &disturbance.wind_m_s);
+            external.force_n += drag.force_n;
+            external.torque_n_m += drag.torque_n_m;
+        }
         let command_rad_s = match &inputs.actuation {
             Actuation::RotorSpeeds(command_rad_s) => command_rad_s,
             Actuation::Wrench(wrench) => return Forces::without_rotors(*wrench, external),
@@ -131,7 +148,8 @@ impl Plant {
             self.drive(state, command_rad_s, &inputs.rotor_faults, branches);
         let ground_z_m = self.ground_plane.then_some(inputs.ground_z_m);
         let around = Surroundings { wind_m_s: disturbance.wind_m_s, ground_z_m };
-        let RotorForces { wrench, lateral_n } = RotorForces::new(airframe, state, &around, branches);
+        let RotorForces { wrench, lateral_n } =
+            RotorForces::new((airframe, &self.rotor_map), state, &around, branches);
         if airframe.rotor_aerodynamics.drags() {
             external.force_n += state.body.orientation().in_world(&lateral_n);
         }
@@ -166,8 +184,7 @@ impl Plant {
         }
         let goals_rad_s = goals_rad_s(faults, &command_rad_s, &state.rotor_speed_rad_s);
         let accelerations = core::array::from_fn(|rotor| {
-            let (goal, present) = (goals_rad_s[rotor], state.rotor_speed_rad_s[rotor]);
-            (goal - present) / self.airframe.lag_s(goal, present)
+            self.rotor_lag.acceleration_rad_s2(goals_rad_s[rotor], state.rotor_speed_rad_s[rotor])
         });
         (accelerations, discharge_per_s)
     }
@@ -230,6 +247,8 @@ pub(crate) fn runge_kutta<T: Real>(
     let k2 = f(&state.plus(&k1, h_s / 2.0));
     let k3 = f(&state.plus(&k2, h_s / 2.0));
     let k4 = f(&state.plus(&k3, h_s));
-    // x + h/6 (k₁ + 2k₂ + 2k₃ + k₄)
-    state.plus(&k1, h_s / 6.0).plus(&k2, h_s / 3.0).plus(&k3, h_s / 3.0).plus(&k4, h_s / 6.0).normalized()
+    // x + h/6 (k₁ + 2 (k₂ + k₃) + k₄)
+    let ends = k1.zip_map(&k4, |first, last| first + last);
+    let middle = k2.zip_map(&k3, |second, third| second + third);
+    state.plus(&ends.zip_map(&middle, |ends, middle| ends + (middle + middle)), h_s / 6.0).normalized()
 }

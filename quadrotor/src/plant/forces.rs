@@ -3,7 +3,8 @@
 use nalgebra::Vector3;
 
 use crate::plant::differentiation::real::Real;
-use crate::{Airframe, External, PlantState, Wrench};
+use crate::plant::mass_properties::MassProperties;
+use crate::{External, PlantState, Wrench};
 
 /// All that acts on a plant in a state, but gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,16 +27,16 @@ impl<T: Real> Forces<T> {
 
     /// The time derivative of the state.
     #[inline(always)]
-    pub(crate) fn derivative(&self, airframe: &Airframe, state: &PlantState<T>) -> PlantState<T> {
+    pub(crate) fn derivative(&self, mass: &MassProperties, state: &PlantState<T>) -> PlantState<T> {
         PlantState {
-            body: state.body.derivative(airframe, &self.wrench, &self.external),
+            body: state.body.derivative_of(mass, &self.wrench, &self.external),
             rotor_speed_rad_s: self.rotor_acceleration_rad_s2,
             discharge: self.discharge_per_s,
         }
     }
 
     /// Acceleration of a vehicle with this state, NED, m/s².
-    pub(crate) fn acceleration_m_s2(&self, airframe: &Airframe, state: &PlantState<T>) -> Vector3<T> {
-        state.body.acceleration_m_s2(airframe, self.wrench.thrust_n, &self.external.force_n)
+    pub(crate) fn acceleration_m_s2(&self, mass: &MassProperties, state: &PlantState<T>) -> Vector3<T> {
+        mass.acceleration_m_s2(&state.body, self.wrench.thrust_n, &self.external.force_n)
     }
 }

@@ -14,6 +14,7 @@ pub(crate) mod inertia;
 pub(crate) mod lanes;
 #[cfg(feature = "fleet")]
 pub(crate) mod likeness;
+pub(crate) mod mass_properties;
 pub(crate) mod orientation;
 pub(crate) mod overload;
 pub(crate) mod plant_inputs;

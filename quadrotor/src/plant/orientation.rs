@@ -20,12 +20,6 @@ impl<T: Real> Orientation<T> {
         Self { vector: Vector3::new(i / norm, j / norm, k / norm), scalar: w / norm }
     }
 
-    /// The unit quaternion.
-    pub(crate) fn quaternion(&self) -> Quaternion<T> {
-        let [i, j, k]: [T; 3] = self.vector.into();
-        Quaternion { coords: Vector4::new(i, j, k, self.scalar) }
-    }
-
     /// A vector of the body, FRD, in the world, NED.
     pub(crate) fn in_world(&self, vector: &Vector3<T>) -> Vector3<T> {
         rotated(&self.vector, self.scalar, vector)
@@ -78,13 +72,13 @@ fn rotated<T: Real>(axis: &Vector3<T>, scalar: T, vector: &Vector3<T>) -> Vector
 /// q ⊗ [0, v], Hamilton's product.
 pub(crate) fn times_imaginary<T: Real>(attitude: &Quaternion<T>, vector: &Vector3<T>) -> Quaternion<T> {
     let [i, j, k, w] = attitude.coords.into();
-    let ([x, y, z], none): ([T; 3], T) = ((*vector).into(), T::zero());
+    let [x, y, z]: [T; 3] = (*vector).into();
     Quaternion {
         coords: Vector4::new(
-            w * x + i * none + j * z - k * y,
-            w * y - i * z + j * none + k * x,
-            w * z + i * y - j * x + k * none,
-            w * none - i * x - j * y - k * z,
+            w * x + j * z - k * y,
+            w * y - i * z + k * x,
+            w * z + i * y - j * x,
+            -(i * x) - j * y - k * z,
         ),
     }
 }
@@ -104,7 +98,7 @@ mod tests {
         ) {
             let (attitude, vector) = (Quaternion::new(w, i, j, k), Vector3::from(vector));
             let (ours, theirs) = (Orientation::new(&attitude), UnitQuaternion::new_normalize(attitude));
-            prop_assert_eq!(ours.quaternion(), theirs.into_inner());
+            prop_assert_eq!((ours.vector, ours.scalar), (theirs.imag(), theirs.w));
             prop_assert_eq!(ours.in_world(&vector), theirs * vector);
             prop_assert_eq!(ours.in_body(&vector), theirs.inverse_transform_vector(&vector));
             let (phi, theta, psi) = theirs.euler_angles();

@@ -72,7 +72,7 @@ impl Plant {
     ) -> PlantOutputs<T> {
         let (body, airframe) = (&state.body, self.airframe());
         let forces = self.forces(state, inputs, branches);
-        let mut acceleration_m_s2 = forces.acceleration_m_s2(airframe, state);
+        let mut acceleration_m_s2 = forces.acceleration_m_s2(self.mass(), state);
         if held {
             (acceleration_m_s2.x, acceleration_m_s2.y) = (T::zero(), T::zero());
         }
@@ -108,7 +108,7 @@ impl Plant {
     /// Acceleration in NED, m/s²; none along the ground while static friction holds the vehicle.
     pub fn acceleration_m_s2<T: Valued>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> Vector3<T> {
         let forces = self.forces(state, inputs, &mut ByValue);
-        let acceleration = forces.acceleration_m_s2(self.airframe(), state);
+        let acceleration = forces.acceleration_m_s2(self.mass(), state);
         if self.is_held(state, inputs) {
             Vector3::new(T::zero(), T::zero(), acceleration.z)
         } else {

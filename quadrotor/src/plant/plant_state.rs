@@ -89,8 +89,9 @@ impl<T: Real> PlantState<T> {
 
     /// The same with a unit quaternion: what ends a step of an integrator.
     pub fn normalized(&self) -> Self {
-        let attitude = self.body.orientation().quaternion();
-        Self { body: RigidBody { attitude, ..self.body }, ..*self }
+        let (_, squared) = self.body.down_axis();
+        let coords = self.body.attitude.coords * (T::one() / squared.sqrt());
+        Self { body: RigidBody { attitude: Quaternion { coords }, ..self.body }, ..*self }
     }
 }
 

@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::finite::are_finite;
 use crate::plant::differentiation::real::Real;
+use crate::plant::mass_properties::MassProperties;
 use crate::plant::orientation::{Orientation, times_imaginary};
-use crate::{Airframe, GRAVITY_M_S2, Wrench};
+use crate::{Airframe, Wrench};
 
 /// Position and velocity in NED, attitude FRD into NED, body rates in FRD.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,31 +41,36 @@ impl<T: Real> Default for External<T> {
 
 impl<T: Real> RigidBody<T> {
     /// Time derivative under rotor wrench and external force and torque.
-    #[inline(always)]
     pub fn derivative(&self, airframe: &Airframe, rotors: &Wrench<T>, external: &External<T>) -> Self {
+        self.derivative_of(&MassProperties::new(airframe), rotors, external)
+    }
+
+    /// The same with mass and inertia that have been inverted.
+    #[inline(always)]
+    pub(crate) fn derivative_of(
+        &self,
+        mass: &MassProperties,
+        rotors: &Wrench<T>,
+        external: &External<T>,
+    ) -> Self {
         let rate = self.body_rate_rad_s;
         let torque = rotors.torque_n_m + external.torque_n_m;
         Self {
             position_m: self.velocity_m_s,
-            velocity_m_s: self.acceleration_m_s2(airframe, rotors.thrust_n, &external.force_n),
-            // q̇ = ½ q ⊗ [0, p, q, r]: the second line of (2) without its singularity at θ = ±90°
-            attitude: Quaternion { coords: times_imaginary(&self.attitude, &rate).coords * T::constant(0.5) },
-            body_rate_rad_s: airframe.angular_acceleration_rad_s2(&rate, &torque),
+            velocity_m_s: mass.acceleration_m_s2(self, rotors.thrust_n, &external.force_n),
+            // q̇ = q ⊗ [0, p, q, r]/2: the second line of (2) without its singularity at θ = ±90°
+            attitude: times_imaginary(&self.attitude, &(rate * T::constant(0.5))),
+            body_rate_rad_s: mass.angular_acceleration_rad_s2(&rate, &torque),
         }
     }
 
-    /// Acceleration, NED, m/s², under a thrust and an external force, NED, N.
+    /// |q|² R e₃, the body's down axis in the world, NED, and |q|²: without the root and the divisions of a unit quaternion.
     #[inline(always)]
-    pub(crate) fn acceleration_m_s2(
-        &self,
-        airframe: &Airframe,
-        thrust_n: T,
-        force_n: &Vector3<T>,
-    ) -> Vector3<T> {
-        // World frame NED: v̇ = g e₃ − (F/m) R e₃ + f/m. With v = R [u v w]ᵀ this is the first line of (3), R is that of (2).
-        let thrust = self.orientation().in_world(&Vector3::new(T::zero(), T::zero(), -thrust_n));
-        let gravity = Vector3::new(T::zero(), T::zero(), T::constant(GRAVITY_M_S2));
-        gravity + (thrust + force_n) / T::constant(airframe.mass_kg)
+    pub(crate) fn down_axis(&self) -> (Vector3<T>, T) {
+        let [i, j, k, w]: [T; 4] = self.attitude.coords.into();
+        let (upright, leaning) = (w * w + k * k, i * i + j * j);
+        let doubled = |half: T| half + half;
+        (Vector3::new(doubled(i * k + w * j), doubled(j * k - w * i), upright - leaning), upright + leaning)
     }
 
     /// The rotation FRD into NED. Inside an integration step the quaternion is not exactly unit: it is normalised.

@@ -4,7 +4,8 @@ use nalgebra::Vector3;
 
 use crate::plant::differentiation::real::{Real, constant};
 use crate::plant::events::branches::Branches;
-use crate::{Airframe, PlantState, Wrench, wrench_of_rotors};
+use crate::plant::rotor_map::RotorMap;
+use crate::{Airframe, PlantState, Wrench};
 
 /// Forces of all rotors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,14 +29,13 @@ impl<T: Real> RotorForces<T> {
     /// Of the rotors of a plant in this state.
     #[inline(always)]
     pub(crate) fn new(
-        airframe: &Airframe,
+        (airframe, map): (&Airframe, &RotorMap),
         state: &PlantState<T>,
         around: &Surroundings<T>,
         branches: &mut impl Branches<T>,
     ) -> Self {
         if airframe.is_centred() && airframe.rotor_aerodynamics.is_static() {
-            let wrench = wrench_of_rotors(airframe, &state.rotor_speed_rad_s);
-            return Self { wrench, lateral_n: Vector3::zeros() };
+            return Self { wrench: map.wrench(&state.rotor_speed_rad_s), lateral_n: Vector3::zeros() };
         }
         Self::of_each(airframe, state, around, branches)
     }
@@ -83,10 +83,15 @@ mod tests {
 
     use super::{RotorForces, Surroundings};
     use crate::plant::events::branches::ByValue;
+    use crate::plant::rotor_map::RotorMap;
     use crate::{Airframe, InitialState, PlantState, RotorAerodynamics, wrench_of_rotors};
 
     const CALM: Surroundings<f64> =
         Surroundings { wind_m_s: Vector3::new(0.0, 0.0, 0.0), ground_z_m: Some(0.0) };
+
+    fn made(airframe: &Airframe, state: &PlantState, around: &Surroundings<f64>) -> RotorForces<f64> {
+        RotorForces::new((airframe, &RotorMap::new(airframe)), state, around, &mut ByValue)
+    }
 
     fn state(speeds: [f64; 4], velocity_m_s: [f64; 3]) -> PlantState {
         let initial = InitialState { velocity_m_s, position_m: [0.0, 0.0, -50.0], ..InitialState::default() };
@@ -108,7 +113,7 @@ mod tests {
         };
         let airframe = windmill(aerodynamics, [0.0; 3]);
         let speeds = [310.0, 240.0, 190.0, 280.0];
-        let forces = RotorForces::new(&airframe, &state(speeds, [0.0; 3]), &CALM, &mut ByValue);
+        let forces = made(&airframe, &state(speeds, [0.0; 3]), &CALM);
         let map = wrench_of_rotors(&airframe, &speeds);
         assert!((forces.wrench.thrust_n - map.thrust_n).abs() < 1e-14);
         assert!((forces.wrench.torque_n_m - map.torque_n_m).norm() < 1e-15);
@@ -120,7 +125,7 @@ mod tests {
     fn an_offset_centre_of_gravity_shifts_the_moment() {
         let airframe = windmill(RotorAerodynamics::default(), [0.02, -0.03, 0.05]);
         let speeds = [310.0, 240.0, 190.0, 280.0];
-        let forces = RotorForces::new(&airframe, &state(speeds, [1.0, 2.0, 3.0]), &CALM, &mut ByValue);
+        let forces = made(&airframe, &state(speeds, [1.0, 2.0, 3.0]), &CALM);
         let map = wrench_of_rotors(&airframe, &speeds);
         // A thrust behind the centre of mass, which is ahead, pitches down; one on its right rolls to the left.
         let expected = map.torque_n_m + Vector3::new(-0.03, -0.02, 0.0) * map.thrust_n;
@@ -135,19 +140,19 @@ mod tests {
             RotorAerodynamics { drag_coefficient_n_s2_m: 1e-4, ..RotorAerodynamics::default() };
         let airframe = windmill(aerodynamics, [0.0, 0.0, 0.05]);
         let mut moving = state([250.0; 4], [3.0, -4.0, 7.0]);
-        let forces = RotorForces::new(&airframe, &moving, &CALM, &mut ByValue);
+        let forces = made(&airframe, &moving, &CALM);
         assert!((forces.lateral_n - Vector3::new(-0.3, 0.4, 0.0)).norm() < 1e-15);
         // (0, 0, −0.05) × (−0.3, 0.4, 0)
         assert!((forces.wrench.torque_n_m - Vector3::new(0.02, 0.015, 0.0)).norm() < 1e-15);
         moving = state([250.0; 4], [0.0; 3]);
         moving.body.body_rate_rad_s.z = 2.0;
-        let turned = RotorForces::new(&airframe, &moving, &CALM, &mut ByValue).wrench.torque_n_m;
+        let turned = made(&airframe, &moving, &CALM).wrench.torque_n_m;
         assert!((turned - Vector3::new(0.0, 0.0, -0.1 * 0.275 * 0.275 * 2.0)).norm() < 1e-15, "{turned}");
         // In a wind of the same velocity nothing drags, however it leans.
         moving = state([250.0; 4], [3.0, -4.0, 7.0]);
         moving.body.attitude = UnitQuaternion::from_euler_angles(0.4, -0.3, 2.0).into_inner();
         let drifting = Surroundings { wind_m_s: moving.body.velocity_m_s, ground_z_m: None };
-        assert_eq!(RotorForces::new(&airframe, &moving, &drifting, &mut ByValue).lateral_n.norm(), 0.0);
+        assert_eq!(made(&airframe, &moving, &drifting).lateral_n.norm(), 0.0);
     }
 
     /// A roll to the right lowers the right rotor: it descends, gains thrust, and damps the roll.
@@ -158,7 +163,7 @@ mod tests {
         let airframe = windmill(aerodynamics, [0.0; 3]);
         let mut rolling = state([250.0; 4], [0.0; 3]);
         rolling.body.body_rate_rad_s = Vector3::new(2.0, -1.0, 0.0);
-        let torque = RotorForces::new(&airframe, &rolling, &CALM, &mut ByValue).wrench.torque_n_m;
+        let torque = made(&airframe, &rolling, &CALM).wrench.torque_n_m;
         // Two rotors on each axis: 2 k_z Ω l² p
         let damping = 2.0 * 2e-4 * 250.0 * 0.275 * 0.275;
         assert!((torque - Vector3::new(-2.0 * damping, damping, 0.0)).norm() < 1e-14, "{torque}");
@@ -172,9 +177,9 @@ mod tests {
         let mut low = state([250.0; 4], [0.0; 3]);
         low.body.position_m.z = -0.3;
         low.body.attitude = UnitQuaternion::from_euler_angles(0.2, 0.0, 0.0).into_inner();
-        let forces = RotorForces::new(&airframe, &low, &CALM, &mut ByValue);
+        let forces = made(&airframe, &low, &CALM);
         assert!(forces.wrench.torque_n_m.x < -0.005 && forces.wrench.torque_n_m.y.abs() < 1e-15);
         let none = Surroundings { ground_z_m: None, ..CALM };
-        assert!(RotorForces::new(&airframe, &low, &none, &mut ByValue).wrench.torque_n_m.norm() < 1e-15);
+        assert!(made(&airframe, &low, &none).wrench.torque_n_m.norm() < 1e-15);
     }
 }

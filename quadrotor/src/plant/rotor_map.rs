@@ -3,8 +3,8 @@
 use nalgebra::{Scalar, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::Airframe;
 use crate::plant::differentiation::real::Real;
+use crate::{Airframe, Rotor};
 
 /// Thrust F along the negative down axis of the body, N, and torques τ_φ, τ_θ, τ_ψ in FRD, N·m.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,21 +37,44 @@ impl<T: Scalar + Copy> Wrench<T> {
     }
 }
 
+/// The rotor map of an airframe: what each rotor makes per squared speed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RotorMap {
+    /// Of each rotor F, τ_φ, τ_θ and τ_ψ.
+    columns: [[f64; 4]; 4],
+}
+
+impl RotorMap {
+    /// Of an airframe.
+    #[inline]
+    pub(crate) fn new(airframe: &Airframe) -> Self {
+        let (k1, k2) = (airframe.thrust_coefficient_n_s2, airframe.torque_coefficient_n_m_s2);
+        let lever = airframe.arm_length_m * k1;
+        // F = k₁ Σ ω²
+        // τ_φ = −l k₁ Σ y ω²
+        // τ_θ = l k₁ Σ x ω²
+        // τ_ψ = k₂ Σ ±ω²
+        let column =
+            |rotor: Rotor| [k1, -lever * rotor.y, lever * rotor.x, k2 * rotor.direction.torque_sign()];
+        Self { columns: airframe.layout.rotors.map(column) }
+    }
+
+    /// Thrust and torques of four rotor speeds, rad/s, in the order of the airframe's layout.
+    #[inline(always)]
+    pub(crate) fn wrench<T: Real>(&self, rotor_speed_rad_s: &[T; 4]) -> Wrench<T> {
+        let mut sums = [T::zero(); 4];
+        for (column, speed) in self.columns.iter().zip(rotor_speed_rad_s) {
+            let squared = *speed * *speed;
+            for (sum, per_squared) in sums.iter_mut().zip(column) {
+                *sum += squared * *per_squared;
+            }
+        }
+        let [thrust_n, roll, pitch, yaw] = sums;
+        Wrench { thrust_n, torque_n_m: Vector3::new(roll, pitch, yaw) }
+    }
+}
+
 /// Thrust and torques of four rotor speeds, rad/s, in the order of the airframe's layout: (1).
 pub fn wrench_of_rotors<T: Real>(airframe: &Airframe, rotor_speed_rad_s: &[T; 4]) -> Wrench<T> {
-    let (k1, k2, l) =
-        (airframe.thrust_coefficient_n_s2, airframe.torque_coefficient_n_m_s2, airframe.arm_length_m);
-    let [mut total, mut roll, mut pitch, mut yaw] = [T::zero(); 4];
-    for (rotor, speed) in airframe.layout.rotors.iter().zip(rotor_speed_rad_s) {
-        let squared = *speed * *speed;
-        total += squared;
-        roll -= squared * rotor.y;
-        pitch += squared * rotor.x;
-        yaw += squared * rotor.direction.torque_sign();
-    }
-    // F = k₁ Σ ω²
-    // τ_φ = −l k₁ Σ y ω²
-    // τ_θ = l k₁ Σ x ω²
-    // τ_ψ = k₂ Σ ±ω²
-    Wrench { thrust_n: total * k1, torque_n_m: Vector3::new(roll * (l * k1), pitch * (l * k1), yaw * k2) }
+    RotorMap::new(airframe).wrench(rotor_speed_rad_s)
 }

@@ -23,14 +23,32 @@ impl Default for RotorSpin {
     }
 }
 
+/// The lag of the rotors, inverted once for all steps.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RotorLag {
+    falling_1_s: f64,
+    rising_1_s: f64,
+}
+
+impl RotorLag {
+    /// Of the rotors of an airframe.
+    pub(crate) fn new(airframe: &Airframe) -> Self {
+        Self { falling_1_s: 1.0 / airframe.lag_s(0.0, 1.0), rising_1_s: 1.0 / airframe.lag_s(1.0, 0.0) }
+    }
+
+    /// ω̇ = (ω_goal − ω)/τ, rad/s². τ jumps where the two meet, but there the acceleration is zero and stays continuous.
+    #[inline(always)]
+    pub(crate) fn acceleration_rad_s2<T: Real>(&self, goal_rad_s: T, present_rad_s: T) -> T {
+        let [falling, rising] = [self.falling_1_s, self.rising_1_s].map(T::constant);
+        (goal_rad_s - present_rad_s) * present_rad_s.where_greater(goal_rad_s, falling, rising)
+    }
+}
+
 impl Airframe {
-    /// Time constant of the lag of a rotor that turns at `present_rad_s` towards `goal_rad_s`, s. It jumps where the two
-    /// meet, but the acceleration (goal − present)/τ is zero there and stays continuous.
-    #[inline]
-    pub(crate) fn lag_s<T: Real>(&self, goal_rad_s: T, present_rad_s: T) -> T {
-        let rising_s = self.rotor_time_constant_s;
-        let [falling, rising] = [rising_s * self.rotor_spin.fall_time_ratio, rising_s].map(T::constant);
-        present_rad_s.where_greater(goal_rad_s, falling, rising)
+    /// Time constant of the lag of a rotor that turns at `present_rad_s` towards `goal_rad_s`, s.
+    pub(crate) fn lag_s(&self, goal_rad_s: f64, present_rad_s: f64) -> f64 {
+        let falls = present_rad_s > goal_rad_s;
+        self.rotor_time_constant_s * if falls { self.rotor_spin.fall_time_ratio } else { 1.0 }
     }
 
     /// Near hover, the reaction to spin-up is the drag torque's rate of change times this, s: J_r Ω̇ = J_r/(2k₂Ω) · d(k₂Ω²)/dt.
@@ -67,7 +85,7 @@ impl Airframe {
 mod tests {
     use nalgebra::Vector3;
 
-    use super::RotorSpin;
+    use super::{RotorLag, RotorSpin};
     use crate::Airframe;
 
     /// Front and back turn clockwise, right and left counterclockwise.
@@ -92,5 +110,9 @@ mod tests {
         let spin = RotorSpin { fall_time_ratio: 2.5, ..RotorSpin::default() };
         let airframe = Airframe { rotor_spin: spin, rotor_time_constant_s: 0.04, ..Airframe::default() };
         assert_eq!((airframe.lag_s(300.0, 200.0), airframe.lag_s(200.0, 300.0)), (0.04, 0.1));
+        let lag = RotorLag::new(&airframe);
+        let [rising, falling] =
+            [(300.0, 200.0), (200.0, 300.0)].map(|(goal, present)| lag.acceleration_rad_s2(goal, present));
+        assert!((rising - 2500.0).abs() < 1e-12 && (falling + 1000.0).abs() < 1e-12);
     }
 }

@@ -27,7 +27,7 @@ impl Plant {
         }
         let (inputs, mut branches) = (gathered_inputs(inputs)?, Unanimous::new());
         let reached = runge_kutta(&gathered(states), h_s, |state| {
-            self.forces(state, &inputs, &mut branches).derivative(self.airframe(), state)
+            self.forces(state, &inputs, &mut branches).derivative(self.mass(), state)
         });
         branches.have_agreed().then(|| scattered(&reached))
     }

@@ -100,16 +100,16 @@ impl<const N: usize> BoundedEstimate<N> {
         (value, variance): (f64, f64),
     ) {
         let spread = self.covariance * row;
-        let expected = row.dot(&spread) + variance;
-        let gain = SVector::from_fn(|i, _| if learned[i] { spread[i] / expected } else { 0.0 });
-        let mean = self.mean + gain * self.innovation(row, value);
-        // Joseph's form (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ, multiplied out: P − k sᵀ − s kᵀ + k (hᵀs + r) kᵀ with s = P h. It stays
-        // exactly symmetric.
+        let share = 1.0 / (row.dot(&spread) + variance);
+        let moving = SVector::from_fn(|i, _| if learned[i] { spread[i] } else { 0.0 });
+        let mean = self.mean + moving * (share * self.innovation(row, value));
+        // Joseph's form (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ with s = P h and k = s/(hᵀs + r) where it is learned, 0 elsewhere: P − s sᵀ/(hᵀs + r),
+        // but for those that are both not learned. It stays exactly symmetric.
         // By columns, so that several numbers are calculated at once.
         let mut covariance = self.covariance;
         for j in 0..N {
-            let taken = gain * spread[j] + spread * gain[j];
-            covariance.set_column(j, &(self.covariance.column(j) - taken + gain * gain[j] * expected));
+            let taken = if learned[j] { spread } else { moving } * spread[j] * share;
+            covariance.set_column(j, &(self.covariance.column(j) - taken));
         }
         // No measurement makes anything less certain.
         let narrower = (0..N)

@@ -37,7 +37,7 @@ impl Plant {
         state: &PlantState<T>,
         inputs: &PlantInputs<T>,
     ) -> PlantState<T> {
-        let derivative = self.forces(state, inputs, &mut { mode }).derivative(self.airframe(), state);
+        let derivative = self.forces(state, inputs, &mut { mode }).derivative(self.mass(), state);
         if mode.is_on(Switch::Held) { held(derivative) } else { derivative }
     }
 
