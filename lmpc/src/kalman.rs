@@ -144,9 +144,14 @@ impl<const N: usize, const P: usize, const Q: usize, T: Precision> KalmanPredict
         // x̂(k+1|k) = A x̂(k|k−1) + B u(k) + K (y(k) − C x̂(k|k−1))
         let open_loop = self.a * estimate + self.b * input;
         let corrected = open_loop + self.gain * (measurement - self.c * estimate);
-        [corrected, open_loop]
-            .into_iter()
-            .find(|candidate| candidate.iter().all(|value| value.is_finite()))
-            .unwrap_or(*estimate)
+        let is_finite =
+            |estimate: &SVector<T, N>| estimate.iter().fold(true, |all, value| all & value.is_finite());
+        if is_finite(&corrected) {
+            corrected
+        } else if is_finite(&open_loop) {
+            open_loop
+        } else {
+            *estimate
+        }
     }
 }

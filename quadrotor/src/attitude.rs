@@ -27,8 +27,8 @@ pub(crate) fn attitude_error(
 ) -> Vector3<f64> {
     let error = reference.inverse() * attitude;
     let (w, x, y, z) = (error.w, error.i, error.j, error.k);
-    let upright = libm::hypot(w, z);
-    let leaning = libm::hypot(x, y);
+    let upright = libm::sqrt(w * w + z * z);
+    let leaning = libm::sqrt(x * x + y * y);
     let tilt = 2.0 * libm::atan2(leaning, upright);
     // Below this the direction of the lean is not computable, nor needed.
     const TINY: f64 = 1e-9;
@@ -54,7 +54,15 @@ pub(crate) struct Angle {
 impl Angle {
     /// Of an angle, rad.
     pub(crate) fn new(angle_rad: f64) -> Self {
-        Self { sine: libm::sin(angle_rad), cosine: libm::cos(angle_rad) }
+        let (sine, cosine) = libm::sincos(angle_rad);
+        Self { sine, cosine }
+    }
+
+    /// A vector that is turned by it about the down axis.
+    pub(crate) fn turned(&self, vector: &Vector3<f64>) -> Vector3<f64> {
+        let Self { sine, cosine } = *self;
+        let (x, y) = (cosine * vector.x - sine * vector.y, sine * vector.x + cosine * vector.y);
+        Vector3::new(x, y, vector.z)
     }
 
     /// Within ±π, rad.

@@ -15,8 +15,8 @@ pub(crate) struct LaneFlight<'a, S> {
     /// Where it flies to, µs.
     time_us: u64,
     inputs: S,
-    /// Whether all later inputs are known.
-    is_known: bool,
+    /// Whether all later inputs are those that were sampled.
+    are_known: bool,
     /// Where its plant flies to, µs, if it has not come to its end.
     next_us: Option<u64>,
 }
@@ -28,7 +28,7 @@ impl<'a, S: InputSignal> LaneFlight<'a, S> {
         failure: &'a mut Option<SimulationError>,
         (time_us, inputs): (u64, S),
     ) -> Self {
-        Self { simulation, failure, time_us, inputs, is_known: false, next_us: None }
+        Self { simulation, failure, time_us, inputs, are_known: false, next_us: None }
     }
 
     /// Refuses a time that has passed.
@@ -43,7 +43,7 @@ impl<'a, S: InputSignal> LaneFlight<'a, S> {
         if self.failure.is_some() {
             return;
         }
-        match self.simulation.next_event_us(self.time_us, &self.inputs, &mut self.is_known) {
+        match self.simulation.next_event_us(self.time_us, &self.inputs, &mut self.are_known) {
             Ok(next_us) => self.next_us = next_us,
             Err(failure) => self.fail(failure),
         }

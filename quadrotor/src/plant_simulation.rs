@@ -82,8 +82,13 @@ impl PlantSimulation {
 
     /// The plant's state now.
     pub fn plant_state(&self) -> PlantState {
-        let PlantSimulationState { time_us, event_us, plant, inputs } = &self.state;
-        if time_us == event_us {
+        self.plant_at(self.state.time_us)
+    }
+
+    /// The plant's state at `time_us`, not before the last event nor after the next.
+    fn plant_at(&self, time_us: u64) -> PlantState {
+        let PlantSimulationState { event_us, plant, inputs, .. } = &self.state;
+        if time_us == *event_us {
             return *plant;
         }
         self.plant.step(plant, inputs, (time_us - event_us) as f64 / 1e6)
@@ -128,19 +133,15 @@ impl PlantSimulation {
         while self.state.time_us < time_us {
             self.take(&inputs(self.state.time_us))?;
             let next_us = next_point_us(self.state.event_us);
-            let reached_us = next_us.min(time_us);
-            let reached = PlantSimulationState { time_us: reached_us, ..self.state };
-            let flown = Self { state: reached, ..*self };
-            if reached_us == next_us {
-                let plant = flown.plant_state();
+            if next_us <= time_us {
+                let plant = self.plant_at(next_us);
                 if plant.has_diverged() {
                     let overload = self.state.inputs.disturbance.overload(self.plant.airframe());
                     return Err(SimulationError::Diverged { time_us: next_us, overload });
                 }
-                self.state = PlantSimulationState { event_us: next_us, plant, ..reached };
-            } else {
-                self.state = reached;
+                (self.state.event_us, self.state.plant) = (next_us, plant);
             }
+            self.state.time_us = next_us.min(time_us);
         }
         Ok(())
     }

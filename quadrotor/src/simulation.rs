@@ -163,8 +163,8 @@ impl Simulation {
     /// [`SimulationError`]; the flight then stands at the last event before it.
     pub fn advance_to(&mut self, time_us: u64, inputs: &impl InputSignal) -> Result<(), SimulationError> {
         self.check_order(time_us)?;
-        let mut is_known = false;
-        while let Some(next_us) = self.next_event_us(time_us, inputs, &mut is_known)? {
+        let mut are_known = false;
+        while let Some(next_us) = self.next_event_us(time_us, inputs, &mut are_known)? {
             self.arrive(next_us, self.plant_at(next_us))?;
         }
         self.world.time_us = time_us;
@@ -180,13 +180,13 @@ impl Simulation {
     }
 
     /// Samples at the last event, if that is due on the way to `time_us`, and returns the next event, to which the plant flies without
-    /// change of what acts on it. Without one before `time_us` or there, that is where the flight goes on to. `is_known` becomes whether
+    /// change of what acts on it. Without one before `time_us` or there, that is where the flight goes on to. `are_known` becomes whether
     /// all later inputs are those that were sampled: they need not be looked at while the control loop waits.
     pub(crate) fn next_event_us(
         &mut self,
         time_us: u64,
         inputs: &impl InputSignal,
-        is_known: &mut bool,
+        are_known: &mut bool,
     ) -> Result<Option<u64>, SimulationError> {
         // The events strictly before the goal; one at the goal belongs to the next call, whose inputs
         // apply from there on.
@@ -194,9 +194,9 @@ impl Simulation {
             return Ok(None);
         }
         let event_us = self.world.event_us;
-        if self.control.next_sample_us() <= event_us && !(*is_known && self.control.waits(event_us)) {
+        if self.control.next_sample_us() <= event_us && !(*are_known && self.control.waits(event_us)) {
             inputs.with(event_us, |inputs| self.sample(inputs))?;
-            *is_known = inputs.is_constant();
+            *are_known = inputs.is_constant();
         }
         // A sample of the control loop or a point of the integration grid: no integration step crosses a sample,
         // wherever it is interrupted.

@@ -6,7 +6,7 @@ use lmpc::{ControllerState, ModelIncrement, Sample, Step};
 use nalgebra::{SVector, UnitQuaternion, Vector1, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::attitude::{attitude_error, turned};
+use crate::attitude::{Angle, attitude_error, turned};
 use crate::control::activity::ControllerActivity;
 use crate::control::attitude_reference::AttitudeReference;
 use crate::control::spin::Spin;
@@ -109,11 +109,11 @@ impl Deviation {
     }
 
     /// In other axes.
-    fn turned(&self, turn: &UnitQuaternion<f64>) -> Self {
+    fn turned(&self, turn: Angle) -> Self {
         Self {
-            angle_rad: turn * self.angle_rad,
-            rate_rad_s: turn * self.rate_rad_s,
-            acceleration_rad_s2: turn * self.acceleration_rad_s2,
+            angle_rad: turn.turned(&self.angle_rad),
+            rate_rad_s: turn.turned(&self.rate_rad_s),
+            acceleration_rad_s2: turn.turned(&self.acceleration_rad_s2),
         }
     }
 
@@ -262,9 +262,9 @@ impl AttitudeController {
     /// spins about its thrust axis; an integral left behind in turning axes would push sideways.
     fn turn_with_the_body(&mut self, attitude: &UnitQuaternion<f64>) {
         let spun_rad = turned(&self.attitude, attitude).z;
-        let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.0, 0.0, -spun_rad));
-        self.lean.turn_feedback(|lean| (turn * Vector3::new(lean.x, lean.y, 0.0)).xy());
-        self.deviation = self.deviation.turned(&turn);
+        let turn = Angle::new(-spun_rad);
+        self.lean.turn_feedback(|lean| turn.turned(&Vector3::new(lean.x, lean.y, 0.0)).xy());
+        self.deviation = self.deviation.turned(turn);
         self.attitude = *attitude;
     }
 

@@ -140,11 +140,12 @@ impl ControlState {
             (clocks.first_sample_us(self.next_us), clocks.first_instant_us(self.next_us));
     }
 
-    /// Goes on with what was learned by now in place of what was believed before.
-    fn believe(&mut self, believed: &Configuration, configuration: &Configuration) {
-        let learned = self.learned.in_place_of_belief(configuration);
+    /// Goes on with what was learned by now in place of what was believed before: the configuration that has it.
+    fn believe(&mut self, believed: &Configuration, configuration: &Configuration) -> Configuration {
+        let learned = self.believed(configuration);
         self.cascade.believe(believed, &learned);
         self.estimator.believe(believed, &learned);
+        learned
     }
 
     /// Whether limits have been lowered that the present motion cannot keep yet.
@@ -329,10 +330,11 @@ impl ControlState {
         measurement: &Measurement,
         (due, time_us): (Due, u64),
     ) -> Result<(), ControlError> {
-        if due.attitude {
-            self.learn(&design.configuration, &measurement.motion, inputs.ground_z_m, time_us);
-        }
-        let configuration = &self.learned.in_place_of_belief(&design.configuration);
+        let configuration = &if due.attitude {
+            self.learn(&design.configuration, &measurement.motion, inputs.ground_z_m, time_us)
+        } else {
+            self.believed(&design.configuration)
+        };
         let seen = Observation::new(configuration, &self.estimator, &measurement.motion, time_us);
         match &inputs.target {
             Target::Reference(reference) => {
@@ -367,12 +369,19 @@ impl ControlState {
         Ok(())
     }
 
-    /// Learns mass and drag from the motion until now, and goes on with them.
-    fn learn(&mut self, configuration: &Configuration, measured: &RigidBody, ground_z_m: f64, time_us: u64) {
+    /// Learns mass and drag from the motion until now, and goes on with the configuration that has them.
+    fn learn(
+        &mut self,
+        configuration: &Configuration,
+        measured: &RigidBody,
+        ground_z_m: f64,
+        time_us: u64,
+    ) -> Configuration {
+        let believed = self.believed(configuration);
         let height_m = ground_z_m - measured.position_m.z;
         if self.law == ControlLaw::RotorLoss {
             self.learned.interrupt();
-            return;
+            return believed;
         }
         let by_position = configuration.sensors.output_feedback;
         let seen = self.estimator.seen(&configuration.sensors, measured, time_us);
@@ -389,9 +398,8 @@ impl ControlState {
             rotor_command_rad_s: &self.command.speed_rad_s,
             time_us,
         };
-        let believed = self.learned.in_place_of_belief(configuration);
         self.learned.observe(configuration, &sample);
-        self.believe(&believed, configuration);
+        self.believe(&believed, configuration)
     }
 
     /// Runs the cascade along a reference: the position, altitude and attitude controllers whose clocks tick.
@@ -405,7 +413,6 @@ impl ControlState {
         time_us: u64,
     ) {
         let cascade = &design.cascade;
-        let limits = &design.configuration.flyable_limits();
         if due.position || due.altitude {
             let attitude = cascade.attitude_loop();
             self.limits.watch(&design.configuration, attitude.as_ref(), &self.guidance, &seen.body, time_us);
@@ -439,6 +446,7 @@ impl ControlState {
             self.cascade.sample_altitude(configuration, cascade, seen, &now, time_us);
         }
         if due.attitude {
+            let limits = &design.configuration.limits;
             let now = self.guidance.sample_heading(reference, limits, time_us).on(&now);
             // A command takes effect as late as the rotors answer, and in the middle of the time for which it is held.
             let lag_us = (configuration.airframe.rotor_time_constant_s * 1e6) as u64;

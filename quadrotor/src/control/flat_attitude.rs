@@ -76,14 +76,15 @@ impl FlatAttitude {
         let thrust = Vector3::z() * GRAVITY_M_S2 - acceleration_m_s2;
         let (first, second) = (-jerk_m_s3, -snap_m_s4);
         let size = thrust.norm();
-        let down = if size > NO_THRUST_M_S2 { thrust / size } else { Vector3::z() };
-        let divisor = size.max(LEAST_THRUST_M_S2);
+        let down = if size > NO_THRUST_M_S2 { thrust * (1.0 / size) } else { Vector3::z() };
+        let per_thrust = 1.0 / size.max(LEAST_THRUST_M_S2);
         // f' = b₃·ṫ,  ḃ₃ = (ṫ − f' b₃)/f
         let size_rate = down.dot(&first);
-        let down_rate = (first - down * size_rate) / divisor;
+        let down_rate = (first - down * size_rate) * per_thrust;
         // f" = ḃ₃·ṫ + b₃·ẗ,  b̈₃ = (ẗ − f" b₃ − 2 f' ḃ₃)/f
         let size_acceleration = down_rate.dot(&first) + down.dot(&second);
-        let down_acceleration = (second - down * size_acceleration - down_rate * (2.0 * size_rate)) / divisor;
+        let down_acceleration =
+            (second - down * size_acceleration - down_rate * (2.0 * size_rate)) * per_thrust;
 
         let yaw = Angle::new(heading.yaw_rad);
         let [roll, pitch] = tilt_angles(&down, yaw);

@@ -18,6 +18,8 @@ pub struct Mixer {
     /// Thrust of each rotor per mean magnitude of the thrusts that make a yaw torque when the rotors share it evenly: ±1 if
     /// they do.
     turning: [f64; 4],
+    /// One over its magnitude.
+    per_turning: [f64; 4],
 }
 
 /// A rotor with a smaller share in the yaw has none.
@@ -42,13 +44,15 @@ impl Mixer {
     pub fn new(airframe: &Airframe) -> Result<Self, ConfigurationError> {
         let inverse: Matrix4<f64> = airframe.layout.inverse_allocation()?;
         let (weakest, strongest) = airframe.thrust_range_n();
+        let turning = core::array::from_fn(|rotor| 4.0 * inverse[(rotor, 3)]);
         Ok(Self {
             thrust_coefficient_n_s2: airframe.thrust_coefficient_n_s2,
             torque_coefficient_n_m_s2: airframe.torque_coefficient_n_m_s2,
             arm_length_m: airframe.arm_length_m,
             range_n: (weakest / 4.0, strongest / 4.0),
             tilting: core::array::from_fn(|rotor| [inverse[(rotor, 1)], inverse[(rotor, 2)]]),
-            turning: core::array::from_fn(|rotor| 4.0 * inverse[(rotor, 3)]),
+            turning,
+            per_turning: turning.map(|turning| 1.0 / libm::fabs(turning).max(NO_YAW)),
         })
     }
 
@@ -178,14 +182,13 @@ impl Mixer {
     fn yaw_bounds(&self, tilt: &[f64; 4], mean: f64) -> ([YawBound; 4], [YawBound; 4]) {
         let (weakest, strongest) = self.range_n;
         let bound = |rotor: usize, from_below: bool| {
-            let (tilt, turning) = (tilt[rotor], self.turning[rotor]);
-            let size = libm::fabs(turning).max(NO_YAW);
+            let (tilt, turning, per) = (tilt[rotor], self.turning[rotor], self.per_turning[rotor]);
             let (tilt, room, gain) = if (turning > 0.0) == from_below {
                 (-tilt, mean - weakest, -1.0)
             } else {
                 (tilt, strongest - mean, 1.0)
             };
-            YawBound { size: tilt / size, room: room / size, gain: gain / size }
+            YawBound { size: tilt * per, room: room * per, gain: gain * per }
         };
         (core::array::from_fn(|rotor| bound(rotor, true)), core::array::from_fn(|rotor| bound(rotor, false)))
     }

@@ -16,6 +16,9 @@ use crate::{Airframe, PredictionModel};
 pub(crate) struct ThrustLag {
     /// κ, what is left of a difference after a sample; `None` when commands are to act at once.
     kept: Option<f64>,
+    /// 1/(1 − κ) and 1/k₁: all rotors are multiplied by them.
+    per_rest: f64,
+    per_coefficient_1_n_s2: f64,
     coefficient_n_s2: f64,
     speed_range_rad_s: (f64, f64),
 }
@@ -26,6 +29,8 @@ impl ThrustLag {
         let kept = libm::exp(-sample_time_s / airframe.rotor_time_constant_s);
         Self {
             kept: (model == PredictionModel::InnerLoops).then_some(kept),
+            per_rest: 1.0 / (1.0 - kept),
+            per_coefficient_1_n_s2: 1.0 / airframe.thrust_coefficient_n_s2,
             coefficient_n_s2: airframe.thrust_coefficient_n_s2,
             speed_range_rad_s: (airframe.rotor_speed_min_rad_s, airframe.rotor_speed_max_rad_s),
         }
@@ -35,12 +40,13 @@ impl ThrustLag {
     pub(crate) fn command_rad_s(&self, thrust_n: f64, speed_rad_s: f64) -> f64 {
         let k1 = self.coefficient_n_s2;
         let (slowest, fastest) = self.speed_range_rad_s;
+        let speed_of = |thrust_n: f64| libm::sqrt(thrust_n.max(0.0) * self.per_coefficient_1_n_s2);
         let command = match self.kept {
             Some(kept) => {
                 let after = thrust_n + (k1 * speed_rad_s * speed_rad_s - thrust_n) * kept;
-                (libm::sqrt(after.max(0.0) / k1) - kept * speed_rad_s) / (1.0 - kept)
+                (speed_of(after) - kept * speed_rad_s) * self.per_rest
             }
-            None => libm::sqrt(thrust_n.max(0.0) / k1),
+            None => speed_of(thrust_n),
         };
         command.clamp(slowest, fastest)
     }
@@ -50,7 +56,7 @@ impl ThrustLag {
     pub(crate) fn settled_rad_s(&self, command_rad_s: f64, speed_rad_s: f64) -> f64 {
         let Some(kept) = self.kept else { return command_rad_s };
         let after = command_rad_s + (speed_rad_s - command_rad_s) * kept;
-        libm::sqrt(((after * after - speed_rad_s * speed_rad_s * kept) / (1.0 - kept)).max(0.0))
+        libm::sqrt(((after * after - speed_rad_s * speed_rad_s * kept) * self.per_rest).max(0.0))
     }
 }
 

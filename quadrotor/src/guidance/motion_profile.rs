@@ -15,6 +15,9 @@ pub struct Motion {
     pub jerk: f64,
 }
 
+/// A product takes less time than a division.
+const SIXTH: f64 = 1.0 / 6.0;
+
 impl Motion {
     /// At rest.
     pub fn at(position: f64) -> Self {
@@ -25,7 +28,7 @@ impl Motion {
     pub fn after(&self, time_s: f64) -> Self {
         let Self { position: p, velocity: v, acceleration: a, jerk: j } = *self;
         Self {
-            position: p + time_s * (v + time_s * (a / 2.0 + time_s * j / 6.0)),
+            position: p + time_s * (v + time_s * (a / 2.0 + time_s * j * SIXTH)),
             velocity: v + time_s * (a + time_s * j / 2.0),
             acceleration: a + time_s * j,
             jerk: j,

@@ -120,6 +120,11 @@ impl Airframe {
         vanish(&self.centre_of_gravity_m)
     }
 
+    /// Whether all that the rotors do is in the rotor map (1).
+    pub(crate) fn has_static_rotors(&self) -> bool {
+        self.is_centred() && self.rotor_aerodynamics.is_static() && self.rotor_spin.inertia_kg_m2 == 0.0
+    }
+
     /// Places of the rotors, FRD from the centre of mass, m.
     #[inline]
     pub(crate) fn rotor_places_m(&self) -> [Vector3<f64>; 4] {

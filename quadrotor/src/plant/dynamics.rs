@@ -39,6 +39,8 @@ pub struct Plant {
     mass: MassProperties,
     rotor_lag: RotorLag,
     rotor_map: RotorMap,
+    /// Whether its rotors do what the rotor map says, and drag and battery do nothing.
+    is_plain: bool,
     /// No foot is farther from the centre of mass.
     reach_m: f64,
     /// Fleets look for plants of a kind at each call.
@@ -64,6 +66,7 @@ impl Plant {
             mass: MassProperties::new(airframe),
             rotor_lag: RotorLag::new(airframe),
             rotor_map: RotorMap::new(airframe),
+            is_plain: airframe.has_static_rotors() && !airframe.drags() && !airframe.battery.sag,
             reach_m: reach_m(airframe),
             #[cfg(feature = "fleet")]
             likeness: likeness(airframe, ground_plane),
@@ -135,6 +138,19 @@ impl Plant {
     ) -> Forces<T> {
         let (airframe, disturbance) = (&self.airframe, &inputs.disturbance);
         let mut external = External { force_n: disturbance.force_n, torque_n_m: disturbance.torque_n_m };
+        let speeds_rad_s = &state.rotor_speed_rad_s;
+        if let Actuation::RotorSpeeds(command_rad_s) = &inputs.actuation
+            && self.is_plain
+        {
+            // All that is left out is zero.
+            let goals_rad_s = goals_rad_s(&inputs.rotor_faults, command_rad_s, speeds_rad_s);
+            return Forces {
+                wrench: self.rotor_map.wrench(speeds_rad_s),
+                external,
+                rotor_acceleration_rad_s2: self.rotor_lag.accelerations_rad_s2(&goals_rad_s, speeds_rad_s),
+                discharge_per_s: T::zero(),
+            };
+        }
         if airframe.drags() {
             let drag = airframe.drag(&state.body, &disturbance.wind_m_s);
             external.force_n += drag.force_n;
@@ -156,7 +172,7 @@ impl Plant {
         if airframe.rotor_spin.inertia_kg_m2 > 0.0 {
             external.torque_n_m += airframe.spin_torque_n_m(
                 &state.body.body_rate_rad_s,
-                &state.rotor_speed_rad_s,
+                speeds_rad_s,
                 &rotor_acceleration_rad_s2,
             );
         }
@@ -183,10 +199,7 @@ impl Plant {
             discharge_per_s = battery.current_a / pack.capacity_a_s;
         }
         let goals_rad_s = goals_rad_s(faults, &command_rad_s, &state.rotor_speed_rad_s);
-        let accelerations = core::array::from_fn(|rotor| {
-            self.rotor_lag.acceleration_rad_s2(goals_rad_s[rotor], state.rotor_speed_rad_s[rotor])
-        });
-        (accelerations, discharge_per_s)
+        (self.rotor_lag.accelerations_rad_s2(&goals_rad_s, &state.rotor_speed_rad_s), discharge_per_s)
     }
 
     /// One step of the classical fourth-order Runge–Kutta method over `h_s` seconds. The ground is stiff: 1 ms resolves it.
@@ -238,6 +251,8 @@ pub(crate) fn held<T: Real>(mut derivative: PlantState<T>) -> PlantState<T> {
     derivative
 }
 
+/// A step of the classical fourth-order Runge–Kutta method.
+#[inline(always)]
 pub(crate) fn runge_kutta<T: Real>(
     state: &PlantState<T>,
     h_s: f64,

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Airframe;
 use crate::plant::differentiation::real::Real;
+use crate::plant::plant_state::zipped;
 
 /// What a rotor's motor and mass do beside the first-order lag. The default leaves both out, as the paper does.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,9 +39,18 @@ impl RotorLag {
 
     /// ω̇ = (ω_goal − ω)/τ, rad/s². τ jumps where the two meet, but there the acceleration is zero and stays continuous.
     #[inline(always)]
-    pub(crate) fn acceleration_rad_s2<T: Real>(&self, goal_rad_s: T, present_rad_s: T) -> T {
+    pub(crate) fn accelerations_rad_s2<T: Real>(
+        &self,
+        goals_rad_s: &[T; 4],
+        present_rad_s: &[T; 4],
+    ) -> [T; 4] {
         let [falling, rising] = [self.falling_1_s, self.rising_1_s].map(T::constant);
-        (goal_rad_s - present_rad_s) * present_rad_s.where_greater(goal_rad_s, falling, rising)
+        if self.falling_1_s == self.rising_1_s {
+            return zipped(goals_rad_s, present_rad_s, |goal, present| (goal - present) * rising);
+        }
+        zipped(goals_rad_s, present_rad_s, |goal, present| {
+            (goal - present) * present.where_greater(goal, falling, rising)
+        })
     }
 }
 
@@ -111,8 +121,8 @@ mod tests {
         let airframe = Airframe { rotor_spin: spin, rotor_time_constant_s: 0.04, ..Airframe::default() };
         assert_eq!((airframe.lag_s(300.0, 200.0), airframe.lag_s(200.0, 300.0)), (0.04, 0.1));
         let lag = RotorLag::new(&airframe);
-        let [rising, falling] =
-            [(300.0, 200.0), (200.0, 300.0)].map(|(goal, present)| lag.acceleration_rad_s2(goal, present));
+        let [rising, falling, ..] =
+            lag.accelerations_rad_s2(&[300.0, 200.0, 0.0, 0.0], &[200.0, 300.0, 0.0, 0.0]);
         assert!((rising - 2500.0).abs() < 1e-12 && (falling + 1000.0).abs() < 1e-12);
     }
 }

@@ -1,9 +1,10 @@
 //! The same flight however it is split, saved or observed.
 
+use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use quadrotor::{
-    Configuration, ConfigurationError, ControllerKind, InputSignal, Inputs, Sensors, Simulation,
-    SimulationError,
+    AttitudeTarget, Configuration, ConfigurationError, ControllerKind, Disturbance, InputSignal, Inputs,
+    Sensors, Simulation, SimulationError,
 };
 
 use crate::common::{GOAL_M, goal, smooth_flight, unshaped};
@@ -182,4 +183,53 @@ fn impossible_states_are_refused() {
     // The event after the present, then long before it.
     assert!(refused([0xc0, 0x84, 0x3d, 0xb4, 0x88, 0x3d]));
     assert!(refused([0xb4, 0x88, 0x3d, 0x80, 0x80, 0x01]));
+}
+
+/// Inputs that stay as they are need no look while no controller samples, and fly as those that are asked for again and again.
+#[test]
+fn constant_inputs_fly_as_those_that_are_asked_for() {
+    let wind = Vector3::new(3.0, -2.0, 0.0);
+    let windy =
+        Inputs { disturbance: Disturbance { wind_m_s: wind, ..Disturbance::default() }, ..goal(GOAL_M, 0.4) };
+    let attitude = UnitQuaternion::from_euler_angles(0.1, -0.1, 0.4);
+    let target = AttitudeTarget { attitude, body_rate_rad_s: Vector3::zeros(), thrust_n: 7.0 };
+    for inputs in [
+        windy,
+        Inputs { armed: false, ..windy },
+        Inputs { attitude_target: Some(target), ..windy },
+        Inputs { lost_rotor: Some(1), ..windy },
+        Inputs { shaping: Some(false), ..windy },
+    ] {
+        let mut known = Simulation::new(&Configuration::default(), &windy).unwrap();
+        let mut asked = known.clone();
+        for time_us in [403_500, 1_217_000] {
+            known.advance_to(time_us, &inputs).unwrap();
+            asked.advance_to(time_us, &|_| inputs).unwrap();
+            assert_eq!(known, asked, "{inputs:?}");
+        }
+    }
+}
+
+/// The attitude controller samples at 1.000 and 1.010 s. In between a push acts, rotors stop, and what is not finite is refused.
+#[test]
+fn inputs_are_looked_at_between_the_samples_of_the_controllers() {
+    let flown = |change: fn(&mut Inputs)| {
+        let inputs = |time_us: u64| {
+            let mut inputs = goal(GOAL_M, 0.4);
+            if time_us >= 1_003_000 {
+                change(&mut inputs);
+            }
+            inputs
+        };
+        let mut flight = Simulation::new(&Configuration::default(), &inputs(0)).unwrap();
+        flight.advance_to(1_004_000, &inputs).map(|()| flight)
+    };
+    let calm = flown(|_| {}).unwrap();
+    let pushed = flown(|inputs| inputs.disturbance.force_n.x = 0.7).unwrap();
+    let gained_m_s = pushed.plant_state().body.velocity_m_s.x - calm.plant_state().body.velocity_m_s.x;
+    assert!((gained_m_s - 1e-3).abs() < 1e-9, "{gained_m_s}");
+    let disarmed = flown(|inputs| inputs.armed = false).unwrap();
+    assert_eq!(disarmed.rotor_command_rad_s(), [0.0; 4]);
+    let refused = flown(|inputs| inputs.reference.yaw_rad = f64::NAN).unwrap_err();
+    assert_eq!(refused, SimulationError::InputNotFinite { name: "reference.yaw", time_us: 1_003_000 });
 }

@@ -72,11 +72,12 @@ impl<const N: usize> BoundedEstimate<N> {
     /// Forgets for a time, s: P ← D P D + (1 − D²) P₀ with D = e^(−t/T) for each number. A covariance stays one.
     pub(crate) fn forget(&mut self, prior: &Prior<N>, time_s: f64) {
         let kept = prior.kept(time_s);
-        for i in 0..N {
-            let column = self.covariance.column(i).component_mul(&(kept * kept[i]));
-            self.covariance.set_column(i, &column);
+        for (i, column) in self.covariance.as_mut_slice().chunks_exact_mut(N).enumerate() {
+            for (number, other) in column.iter_mut().zip(kept.as_slice()) {
+                *number *= other * kept[i];
+            }
             let deviation = prior.deviation[i];
-            self.covariance[(i, i)] += (1.0 - kept[i] * kept[i]) * deviation * deviation;
+            column[i] += (1.0 - kept[i] * kept[i]) * deviation * deviation;
         }
     }
 
@@ -100,22 +101,26 @@ impl<const N: usize> BoundedEstimate<N> {
         (value, variance): (f64, f64),
     ) {
         let spread = self.covariance * row;
-        let share = 1.0 / (row.dot(&spread) + variance);
-        let moving = SVector::from_fn(|i, _| if learned[i] { spread[i] } else { 0.0 });
-        let mean = self.mean + moving * (share * self.innovation(row, value));
-        // Joseph's form (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ with s = P h and k = s/(hᵀs + r) where it is learned, 0 elsewhere: P − s sᵀ/(hᵀs + r),
-        // but for those that are both not learned. It stays exactly symmetric.
-        // By columns, so that several numbers are calculated at once.
-        let mut covariance = self.covariance;
-        for j in 0..N {
-            let taken = if learned[j] { spread } else { moving } * spread[j] * share;
-            covariance.set_column(j, &(self.covariance.column(j) - taken));
-        }
-        // No measurement makes anything less certain.
-        let narrower = (0..N)
-            .all(|i| covariance[(i, i)] >= 0.0 && covariance[(i, i)] <= self.covariance[(i, i)] * ROUNDING);
-        if variance > 0.0 && narrower && are_finite(mean.as_slice()) && are_finite(covariance.as_slice()) {
-            (self.mean, self.covariance) = (mean, covariance);
+        let root = libm::sqrt(1.0 / (row.dot(&spread) + variance));
+        // Joseph's form (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ with the gains k = P h/(hᵀ P h + r) of those that are learned, and no gain of the
+        // others, is P − s sᵀ with s = P h/√(hᵀ P h + r), but for those of which neither is learned.
+        let taken = spread * root;
+        let moving = SVector::from_fn(|i, _| if learned[i] { taken[i] } else { 0.0 });
+        let mean = self.mean + moving * (root * self.innovation(row, value));
+        // No measurement makes anything less certain. What is not finite does not leave the diagonal so.
+        let narrower = (0..N).all(|i| {
+            let (before, after) = (self.covariance[(i, i)], self.covariance[(i, i)] - moving[i] * taken[i]);
+            after >= 0.0 && after <= before * ROUNDING
+        });
+        if variance > 0.0 && narrower && are_finite(mean.as_slice()) {
+            self.mean = mean;
+            // By columns, so that several numbers are calculated at once.
+            for (j, column) in self.covariance.as_mut_slice().chunks_exact_mut(N).enumerate() {
+                let side = if learned[j] { &taken } else { &moving };
+                for (number, side) in column.iter_mut().zip(side.as_slice()) {
+                    *number -= side * taken[j];
+                }
+            }
             self.project(prior);
         }
     }
@@ -124,6 +129,9 @@ impl<const N: usize> BoundedEstimate<N> {
     /// goes to those that are correlated with it.
     fn project(&mut self, prior: &Prior<N>) {
         let [least, most] = &prior.range;
+        if (0..N).all(|i| (least[i]..=most[i]).contains(&self.mean[i])) {
+            return;
+        }
         for i in 0..N {
             let beyond = self.mean[i] - self.mean[i].max(least[i]).min(most[i]);
             let variance = self.covariance[(i, i)];

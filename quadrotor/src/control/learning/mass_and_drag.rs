@@ -234,9 +234,10 @@ impl MassAndDrag {
         let with_speed_m_s2 =
             DRAG_DEVIATIONS * DRAG_DEVIATION_1_S * self.excitation.change_of_speed_m_s(terms).norm();
         let swing_m_s2 = (change_m_s2.xy().norm() - with_speed_m_s2) / GUST_SWINGS;
-        self.watch_gusts(&rows, (unexplained_m_s2.xy().norm(), swing_m_s2), (noise_m_s2, interval_s));
+        let kept = libm::exp(-interval_s / GUSTY_S);
+        self.watch_gusts(&rows, (unexplained_m_s2.xy().norm(), swing_m_s2), (noise_m_s2, kept));
         let surprise_m_s2 = SURPRISE_M_S2 + SURPRISE_DEVIATIONS * noise_m_s2 + GUST_SWINGS * self.gusts_m_s2;
-        self.surprises *= libm::exp(-interval_s / GUSTY_S);
+        self.surprises *= kept;
         let along_m_s2 = libm::fabs(change_m_s2.z);
         let is_surprised = self.settling_s == 0.0 && along_m_s2 > surprise_m_s2;
         if is_surprised && self.surprises <= MOST_SURPRISES {
@@ -258,7 +259,7 @@ impl MassAndDrag {
         // Filtered equations repeat one another for as long as the filter remembers.
         let repeated = (2.0 * MEMORY_S / interval_s).max(1.0);
         // And one across it passes for drag, as far as the speed changes with it.
-        let across_m_s2 = libm::hypot(noise_m_s2, self.gusts_m_s2);
+        let across_m_s2 = length(noise_m_s2, self.gusts_m_s2);
         let deviations = [across_m_s2, across_m_s2, along_m_s2];
         for ((row, force_m_s2), deviation) in rows.iter().zip(&terms.specific_force_m_s2).zip(deviations) {
             self.estimate.update(prior, &learned, row, (*force_m_s2, deviation * deviation * repeated));
@@ -269,25 +270,28 @@ impl MassAndDrag {
 
     /// Deviation of the equation along the thrust, m/s²: a gust across the thrust comes with one along it, which would pass for mass.
     fn noise_along_m_s2(&self, noise_m_s2: f64) -> f64 {
-        libm::hypot(noise_m_s2, GUST_SWINGS * self.gusts_m_s2)
+        length(noise_m_s2, GUST_SWINGS * self.gusts_m_s2)
     }
 
-    /// Takes for a gust what is not explained of the force across the thrust, as far as it is not a drag that is still to be learned, and a
+    /// Fades gusts to the share that is `kept`, and takes for one what is not explained of the force across the thrust, as far as it is not a drag that is still to be learned, and a
     /// swing of that force. What a flight begins with is no gust.
     fn watch_gusts(
         &mut self,
         rows: &[Unknowns; 3],
         (across_m_s2, swing_m_s2): (f64, f64),
-        (noise_m_s2, interval_s): (f64, f64),
+        (noise_m_s2, kept): (f64, f64),
     ) {
+        self.gusts_m_s2 *= kept;
+        let least_m_s2 = SURPRISE_DEVIATIONS * noise_m_s2 + self.gusts_m_s2;
+        let begins = self.settling_s > SETTLING_S - BEGINNING_S;
+        if begins || across_m_s2.max(swing_m_s2) <= least_m_s2 {
+            return;
+        }
         let drag_m_s2 =
             rows[..2].iter().map(|row| self.estimate.deviation(&drag_part(row))).fold(0.0, f64::max);
-        let begins = self.settling_s > SETTLING_S - BEGINNING_S;
-        let change_m_s2 =
-            if begins { 0.0 } else { swing_m_s2.max(across_m_s2 - DRAG_DEVIATIONS * drag_m_s2) };
+        let change_m_s2 = swing_m_s2.max(across_m_s2 - DRAG_DEVIATIONS * drag_m_s2);
         let gust_m_s2 = change_m_s2 - SURPRISE_DEVIATIONS * noise_m_s2;
-        let fading_m_s2 = self.gusts_m_s2 * libm::exp(-interval_s / GUSTY_S);
-        self.gusts_m_s2 = gust_m_s2.max(fading_m_s2).min(MOST_FORCE_M_S2);
+        self.gusts_m_s2 = gust_m_s2.max(self.gusts_m_s2).min(MOST_FORCE_M_S2);
     }
 
     /// By how much forces differ from the force of the last seconds, FRD, m/s².
@@ -324,7 +328,12 @@ fn noise_m_s2(sensors: &Sensors, filled: f64, interval_s: f64) -> f64 {
         let sensed_m_s2 = sensors.velocity_noise_m_s * libm::sqrt(interval_s) * noise_of_velocities();
         (sensed_m_s2, MODEL_NOISE_M_S2 * filled)
     };
-    libm::hypot(missed_m_s2, sensed_m_s2)
+    length(missed_m_s2, sensed_m_s2)
+}
+
+/// √(x² + y²) of numbers whose squares are no matter.
+fn length(x: f64, y: f64) -> f64 {
+    libm::sqrt(x * x + y * y)
 }
 
 /// One axis of Rᵀ(a − g e₃) = −μ t e₃ − Rᵀ diag(v) κ + Rᵀ d.
