@@ -313,11 +313,10 @@ impl Cascade {
         }
         let wanted_m_s2 = required.acceleration_m_s2 + self.feedback_m_s2;
         // Commands that are cut off turn with the reference.
-        let wanted = RequiredThrust { acceleration_m_s2: wanted_m_s2, ..*required };
-        let within = wanted.leaning_at_most(|| {
+        let within = RequiredThrust { acceleration_m_s2: wanted_m_s2, ..*required }.leaning_at_most(|| {
             let required_m_s2 = required.acceleration_m_s2.xy().norm();
-            let largest_m_s2 = self.largest_lean(configuration, wanted_m_s2.z).beside(required_m_s2);
-            wanted.leaning_as_now(largest_m_s2)
+            // How the limit moves with the feedback is not known.
+            [self.largest_lean(configuration, wanted_m_s2.z).beside(required_m_s2), 0.0, 0.0]
         });
         FlatAttitude::new(&within.acceleration_m_s2, &within.jerk_m_s3, &within.snap_m_s4, heading)
     }

@@ -45,6 +45,9 @@ struct Offset {
     time_us: u64,
     /// When the reference was beyond the limits last, µs.
     beyond_us: u64,
+    /// Whether it has been beyond the thrust: otherwise only the horizontal motion gives way, also to a vehicle that stands on the ground
+    /// and is to go down.
+    gives_height: bool,
 }
 
 impl FollowedWay {
@@ -68,6 +71,7 @@ impl FollowedWay {
         };
         if is_beyond {
             offset.beyond_us = time_us;
+            offset.gives_height |= RequiredThrust::is_beyond_thrust(configuration, reference);
         }
         let is_released = time_us.saturating_sub(offset.beyond_us) > RELEASED_US;
         if is_released || reference.is_at_rest() || !offset.is_finite() {
@@ -92,6 +96,7 @@ impl Offset {
             jerk_m_s3: zero,
             time_us,
             beyond_us: time_us,
+            gives_height: false,
         }
     }
 
@@ -102,9 +107,13 @@ impl Offset {
         let position = self.position_m + (v + (a / 2.0 + j * (t / 6.0)) * t) * t;
         let velocity = v + (a + j * (t / 2.0)) * t;
         let share = (YIELDING_1_S * t).min(1.0);
+        let nearer = |offset: Vector3<f64>, flown: Vector3<f64>| {
+            let nearer = offset.lerp(&flown, share);
+            if self.gives_height { nearer } else { Vector3::new(nearer.x, nearer.y, 0.0) }
+        };
         Self {
-            position_m: position.lerp(&(body.position_m - reference.position_m), share),
-            velocity_m_s: velocity.lerp(&(body.velocity_m_s - reference.velocity_m_s), share),
+            position_m: nearer(position, body.position_m - reference.position_m),
+            velocity_m_s: nearer(velocity, body.velocity_m_s - reference.velocity_m_s),
             time_us,
             ..*self
         }

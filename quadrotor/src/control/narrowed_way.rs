@@ -19,7 +19,7 @@ const FALLEN: f64 = 0.8;
 const LEAST_M_S2: f64 = 1e-3;
 /// Rates, 1/s, at which what is asked for counts and is forgotten: what lasts for less than a second is no way.
 const NOTICED_1_S: f64 = 1.0;
-const FORGOTTEN_1_S: f64 = 0.3;
+const FORGOTTEN_1_S: f64 = 0.15;
 /// Rate, 1/s, at which the share follows what is asked for. It is a double pole, so that acceleration and jerk do not jump.
 const SHARE_1_S: f64 = 5.0;
 /// Motions slower than this, rad/s, are followed whole: the middle of the way is where the reference is in the mean.
@@ -297,11 +297,11 @@ mod tests {
         };
         let mut way = NarrowedWay::default();
         let (mut down_m_s2, mut up_m_s2, mut aside_m) = (0.0_f64, 0.0_f64, 0.0_f64);
-        for step in 0..30_000 {
+        for step in 0..60_000 {
             let (time_us, reference) = (step * STEP_US, line(step * STEP_US));
             let followed =
                 way.follow(&configuration, AVAILABLE_RAD_S2, &reference, time_us).unwrap_or(reference);
-            if step > 20_000 {
+            if step > 40_000 {
                 aside_m = aside_m.max((followed.position_m - reference.position_m).x.abs());
                 down_m_s2 = down_m_s2.max(followed.acceleration_m_s2.z);
                 up_m_s2 = up_m_s2.max(-followed.acceleration_m_s2.z);

@@ -31,14 +31,21 @@ impl RequiredThrust {
 
     /// Whether a reference asks for more thrust, or less, than there is, or leans farther than can be followed.
     pub(crate) fn is_beyond(configuration: &Configuration, reference: &PositionReference) -> bool {
-        let whole = Self::whole(configuration, reference);
-        if whole.within_thrust(configuration) != whole {
+        if Self::is_beyond_thrust(configuration, reference) {
             return true;
         }
+        let whole = Self::whole(configuration, reference);
         let horizontal_m_s2 = whole.acceleration_m_s2.xy().norm();
         let lean_rad = reference_tilt_rad(configuration);
         horizontal_m_s2 > NOTHING_M_S2
             && horizontal_m_s2 > whole.most_horizontal_m_s2(configuration, lean_rad)
+    }
+
+    /// Whether a reference asks for more thrust, or less, than there is.
+    pub(crate) fn is_beyond_thrust(configuration: &Configuration, reference: &PositionReference) -> bool {
+        let vertical_m_s2 = Self::whole(configuration, reference).acceleration_m_s2.z;
+        let (up, down) = level_range(configuration);
+        !(up..=down).contains(&vertical_m_s2)
     }
 
     /// a + D v and its derivatives.
@@ -93,7 +100,7 @@ impl RequiredThrust {
     }
 
     /// A horizontal acceleration of `most_m_s2` that leans as far as it does now, with its two derivatives.
-    pub(crate) fn leaning_as_now(&self, most_m_s2: f64) -> [f64; 3] {
+    fn leaning_as_now(&self, most_m_s2: f64) -> [f64; 3] {
         let up_m_s2 = GRAVITY_M_S2 - self.acceleration_m_s2.z;
         let tangent = if up_m_s2 > NOTHING_M_S2 { most_m_s2 / up_m_s2 } else { 0.0 };
         [most_m_s2, -tangent * self.jerk_m_s3.z, -tangent * self.snap_m_s4.z]
