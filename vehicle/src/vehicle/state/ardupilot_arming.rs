@@ -67,7 +67,7 @@ fn fence(situation: &Situation) -> Option<String> {
     if parts.distance && settings.fence_radius_m < 0.0 {
         return Some("Invalid Circle FENCE_RADIUS value".to_owned());
     }
-    if parts.height && parts.floor && settings.fence_height_m < settings.fence_floor_m {
+    if parts.height && parts.floor && situation.fence_height_m() < situation.fence_floor_m() {
         return Some("FENCE_ALT_MAX < FENCE_ALT_MIN".to_owned());
     }
     let breach = situation.breach_at(&situation.outputs.position_m)?;
