@@ -232,3 +232,16 @@ fn turns_are_told_and_go_the_way_that_the_sign_says() {
         assert!((15.0..50.0).contains(&seconds), "{seconds} s");
     }
 }
+
+/// DroneKit's example of a mission file begins so: the takeoff climbs as high as takeoffs without a height do.
+#[test]
+fn a_takeoff_to_no_height_climbs() {
+    let mut start = settings(Identity::ArduPilot);
+    let rows = [(TAKEOFF, 0.0, 0.0, 0.0), (WAYPOINT, 10.0, 0.0, 15.0), (RETURN, 0.0, 0.0, 0.0)];
+    start.plans.set(PlanKind::Mission, mission(&start, &rows));
+    let mut flier = Flier::with(&start);
+    flier.change_mode(AUTO);
+    flier.arm();
+    flier.wait("the waypoint", 60.0, |flier| flier.vehicle().mission_status().current == 3);
+    assert!((flier.height_m() - 15.0).abs() < 1.0, "{} m", flier.height_m());
+}
