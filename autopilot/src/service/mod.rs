@@ -27,6 +27,7 @@ mod file_transfer;
 mod flight_information;
 mod follow;
 mod global_origin;
+mod gps_input;
 mod greeting;
 pub(crate) mod heartbeat;
 mod high_latency;

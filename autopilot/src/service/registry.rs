@@ -57,6 +57,7 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::terrain::Terrain),
         Box::new(super::shell::Shell),
         Box::new(super::landing_target::LandingTargets),
+        Box::new(super::gps_input::GpsInput::default()),
         Box::new(super::button::Buttons::default()),
         Box::new(super::traffic::Traffic),
         Box::new(super::remote_id::RemoteIdentification),

@@ -9,7 +9,8 @@ const PATH: &str = "@PARAM/param.pck";
 
 /// What the suite's reader makes of a file: type and bits by name. Each name has the beginning that it shares with the one before left out.
 fn decoded(bytes: &[u8]) -> BTreeMap<String, (u8, u32)> {
-    assert_eq!(bytes[..2], 0x671b_u16.to_le_bytes());
+    let with_defaults = bytes[..2] == 0x671c_u16.to_le_bytes();
+    assert!(with_defaults || bytes[..2] == 0x671b_u16.to_le_bytes());
     let (mut found, mut name, mut at) = (BTreeMap::new(), String::new(), 6);
     while at < bytes.len() {
         if bytes[at] == 0 {
@@ -17,7 +18,9 @@ fn decoded(bytes: &[u8]) -> BTreeMap<String, (u8, u32)> {
             continue;
         }
         let (kind, shared, fresh) =
-            (bytes[at], usize::from(bytes[at + 1] & 15), usize::from(bytes[at + 1] >> 4) + 1);
+            (bytes[at] & 15, usize::from(bytes[at + 1] & 15), usize::from(bytes[at + 1] >> 4) + 1);
+        let default = if bytes[at] >> 4 == 1 { 4 } else { 0 };
+        assert!(with_defaults || default == 0);
         name = format!(
             "{}{}",
             &name[..shared],
@@ -25,7 +28,7 @@ fn decoded(bytes: &[u8]) -> BTreeMap<String, (u8, u32)> {
         );
         let value = bytes[at + 2 + fresh..at + 6 + fresh].try_into().expect("four bytes");
         found.insert(name.clone(), (kind, u32::from_le_bytes(value)));
-        at += 6 + fresh;
+        at += 6 + fresh + default;
     }
     found
 }
@@ -83,4 +86,27 @@ fn what_is_wrong_is_told_and_the_rest_is_set() {
         assert!(client.bench.texts().iter().any(|text| text.contains(reason)), "{:?}", client.bench.texts());
         client.bench.fly(1.1);
     }
+}
+
+/// The default of a changed value stands behind it, and nowhere else; parts make the whole.
+#[test]
+fn defaults_and_parts_are_there_for_who_asks() {
+    let mut client = Client::of(Disk::default());
+    let pack = |client: &mut Client, options: &str| client.read(&format!("{PATH}?{options}")).expect("there");
+    let plain = pack(&mut client, "withdefaults=0");
+    assert_eq!(pack(&mut client, "withdefaults=1")[2..], plain[2..], "nothing has been changed");
+    let bytes = encoded(&[("NAV_ACC_RAD", 4, 3.5_f32.to_le_bytes())]);
+    assert_eq!(write(&mut client, &bytes), Ok(Vec::new()));
+    let whole = pack(&mut client, "withdefaults=1");
+    assert_eq!(whole.len(), plain.len() + 4);
+    let changed = [3.5_f32.to_le_bytes(), 2.0_f32.to_le_bytes()].concat();
+    assert!(whole.windows(8).any(|window| window == changed));
+    let all = decoded(&whole);
+    let half = all.len() / 2;
+    let mut parts = decoded(&pack(&mut client, &format!("withdefaults=1&start=0&count={half}")));
+    assert_eq!(parts.len(), half);
+    let rest = pack(&mut client, &format!("start={half}"));
+    assert_eq!(usize::from(u16::from_le_bytes([rest[4], rest[5]])), all.len());
+    parts.extend(decoded(&rest));
+    assert_eq!(parts, all);
 }

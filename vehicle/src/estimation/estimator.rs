@@ -120,7 +120,7 @@ impl Estimator {
         let before = self.filter.state();
         let time = Timestamp::from_micros(fix.time_us);
         let (horizontal, vertical) = (fix.horizontal_accuracy_m as f32, fix.vertical_accuracy_m as f32);
-        let speed = fix.velocity_accuracy_m_s as f32;
+        let (speed, climb) = (fix.velocity_accuracy_m_s as f32, fix.climb_accuracy_m_s as f32);
         let antenna = Position::from_array(NO_LEVER);
         let place = self.filter.fuse_gnss_position(
             time,
@@ -131,7 +131,7 @@ impl Estimator {
         let motion = self.filter.fuse_gnss_velocity(
             time,
             Velocity::from_array(single(&fix.velocity_m_s)),
-            VelocityNoise::horizontal_vertical(speed, speed),
+            VelocityNoise::horizontal_vertical(speed, climb),
             antenna,
         );
         self.resets += u32::from(place.is_reset()) + u32::from(motion.is_reset());

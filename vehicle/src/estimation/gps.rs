@@ -39,6 +39,11 @@ pub const VERTICAL_DILUTION: f64 = 1.1;
 /// A receiver whose last fix is older has none, µs.
 const FRESH_US: u64 = 1_000_000;
 
+/// Standard deviation of a height that a fix leaves out, m: nothing follows from it.
+pub const UNKNOWN_M: f64 = 1e4;
+/// The same of a velocity, m/s.
+pub const UNKNOWN_M_S: f64 = 1e3;
+
 /// A fix whose receiver takes itself to be further off than this, m, is not used. Assumed, several times what is usual.
 const WORST_M: f64 = 20.0;
 
@@ -55,8 +60,10 @@ pub struct GpsFix {
     pub horizontal_accuracy_m: f64,
     /// Of the height, m.
     pub vertical_accuracy_m: f64,
-    /// Of an axis of the velocity, m/s.
+    /// Of a horizontal axis of the velocity, m/s.
     pub velocity_accuracy_m_s: f64,
+    /// Of the vertical velocity, m/s.
+    pub climb_accuracy_m_s: f64,
     /// Satellites in use.
     pub satellites: u8,
 }
@@ -71,6 +78,7 @@ impl GpsFix {
             horizontal_accuracy_m: 0.0,
             vertical_accuracy_m: 0.0,
             velocity_accuracy_m_s: 0.0,
+            climb_accuracy_m_s: 0.0,
             satellites: SATELLITES,
         }
     }
@@ -78,6 +86,11 @@ impl GpsFix {
     /// Whether the receiver takes itself to be near enough for its fix to be used.
     pub fn is_accurate(&self) -> bool {
         self.horizontal_accuracy_m <= WORST_M
+    }
+
+    /// Whether it tells how fast the vehicle is on the map.
+    pub fn tells_velocity(&self) -> bool {
+        self.velocity_accuracy_m_s < UNKNOWN_M_S
     }
 
     /// Whether it still tells where the vehicle is.
@@ -147,6 +160,7 @@ impl GpsReceiver {
                     horizontal_accuracy_m: HORIZONTAL_M,
                     vertical_accuracy_m: VERTICAL_M,
                     velocity_accuracy_m_s: VELOCITY_M_S,
+                    climb_accuracy_m_s: VELOCITY_M_S,
                     satellites: SATELLITES,
                 });
             }

@@ -54,6 +54,7 @@ impl Jamming {
             horizontal_accuracy_m: inaccuracy_m,
             vertical_accuracy_m: inaccuracy_m,
             velocity_accuracy_m_s: VELOCITY_M_S,
+            climb_accuracy_m_s: VELOCITY_M_S,
             satellites,
             ..fix
         })
@@ -78,6 +79,7 @@ mod tests {
             horizontal_accuracy_m: 2.0,
             vertical_accuracy_m: 3.0,
             velocity_accuracy_m_s: 0.05,
+            climb_accuracy_m_s: 0.05,
             satellites: 12,
         };
         let mut fixes = Vec::new();

@@ -52,6 +52,7 @@ mod tests {
             horizontal_accuracy_m: 2.0,
             vertical_accuracy_m: 3.0,
             velocity_accuracy_m_s: 0.05,
+            climb_accuracy_m_s: 0.05,
             satellites: 12,
         };
         (0..100).find(|n| lockout.update(&fix(*n), fitted(*n))).map(|n| f64::from(n) / 10.0)

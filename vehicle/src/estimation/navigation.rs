@@ -90,6 +90,8 @@ struct Defects {
 pub struct Navigation {
     inertial: InertialUnit,
     gps: GpsReceiver,
+    /// A fix from outside that has not been looked at.
+    received: Option<GpsFix>,
     barometer: Barometer,
     magnetometer: Magnetometer,
     estimator: Estimator,
@@ -114,6 +116,7 @@ impl Navigation {
         Self {
             inertial: InertialUnit::new(seed),
             gps: GpsReceiver::new(seed, gps::LATENCY_US),
+            received: None,
             barometer: Barometer::new(seed),
             magnetometer: Magnetometer::new(seed),
             estimator: Estimator::new(start),
@@ -190,20 +193,35 @@ impl Navigation {
                 gps::RATE_HZ
             }
         };
+        let received = self.received.take();
         let fix = self.gps.sample(motion).and_then(|fix| match errors {
+            Some(errors) if errors.switches.gps_comes_by_message() => None,
             Some(errors) => self.errors.fix(errors, fix, frame.origin().latitude_deg),
             None => Some(fix),
         });
+        let period_us = match (received, self.readings.gps) {
+            (Some(fix), Some(before)) => fix.time_us.saturating_sub(before.time_us).min(FIX_PATIENCE_US),
+            _ => 1_000_000 / u64::from(rate_hz),
+        };
+        let by_message = errors.is_some_and(|errors| errors.switches.gps_comes_by_message());
+        let fix = received.filter(|_| by_message).or(fix);
         if let Some(fix) = fix.and_then(|fix| self.defects.gps.tell(fix, fault)) {
             let starts_again = errors.is_none_or(|errors| errors.switches.starts_again);
             let fitted = fix.is_accurate() && self.estimator.gps(&fix, starts_again);
-            self.gps_trust.update(fitted, 1_000_000 / u64::from(rate_hz));
-            self.gps_watch.update(time_us, fix.position_m.into());
+            self.gps_trust.update(fitted, period_us);
+            // Who measures better than a receiver may say the same again.
+            let news = if by_message { [fix.time_us as f64, 0.0, 0.0] } else { fix.position_m.into() };
+            self.gps_watch.update(time_us, news);
             self.readings.gps = Some(fix);
         }
         if stands && time_us.is_multiple_of(STANDS_PERIOD_US) {
             self.estimator.stands(time_us);
         }
+    }
+
+    /// A fix comes from outside, to be looked at with the next tick.
+    pub fn receive_fix(&mut self, fix: GpsFix) {
+        self.received = Some(fix);
     }
 
     /// A reading needs both of its halves.

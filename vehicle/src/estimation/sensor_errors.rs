@@ -72,6 +72,8 @@ pub struct SensorErrors {
 pub struct SensorSwitches {
     /// Whether the GPS receiver works.
     pub gps: bool,
+    /// Kind of GPS receiver, by ArduPilot's number (GPS1_TYPE).
+    pub gps_kind: u8,
     /// What of GPS is used (EKF2_GPS_CTRL): nothing without the lowest bit.
     pub gps_control: f64,
     /// Whether the barometer is used (EKF2_BARO_CTRL).
@@ -106,6 +108,10 @@ pub enum MagnetometerUse {
     AtStart,
 }
 
+/// Kinds of GPS receivers, by ArduPilot's numbers: none, whichever there is, and one that sends GPS_INPUT. All others are simulated.
+const NONE: u8 = 0;
+const AUTOMATIC: u8 = 1;
+const MESSAGES: u8 = 14;
 /// Satellites of the simulated receiver.
 const SATELLITES: u8 = 12;
 /// A degree of latitude, m.
@@ -139,6 +145,7 @@ impl Default for SensorSwitches {
     fn default() -> Self {
         Self {
             gps: true,
+            gps_kind: AUTOMATIC,
             gps_control: 7.0,
             barometer_control: true,
             magnetometer: MagnetometerUse::Automatic,
@@ -167,12 +174,25 @@ impl SensorErrors {
 }
 
 impl SensorSwitches {
+    /// Whether fixes come from outside, by GPS_INPUT, in place of those of the simulated receiver.
+    pub fn gps_comes_by_message(&self) -> bool {
+        self.gps_kind == MESSAGES
+    }
+
+    fn gps_works(&self) -> bool {
+        match self.gps_kind {
+            NONE => false,
+            MESSAGES => true,
+            _ => self.gps,
+        }
+    }
+
     /// The faults with those of the switches: a unit that is broken already stays as it is.
     pub fn with(&self, mut faults: Faults) -> Faults {
         let gps_is_used = self.gps_control as u32 & 1 != 0;
         let compass_is_used = self.magnetometer != MagnetometerUse::None;
         for (sensor, silent, fault) in [
-            (Sensor::Gps, !self.gps || !gps_is_used, SensorFault::Off),
+            (Sensor::Gps, !self.gps_works() || !gps_is_used, SensorFault::Off),
             (Sensor::Barometer, self.barometer_off || !self.barometer_control, SensorFault::Off),
             (Sensor::Barometer, self.barometer_frozen, SensorFault::Stuck),
             (Sensor::Magnetometer, self.magnetometer_off || !compass_is_used, SensorFault::Off),

@@ -77,7 +77,7 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("PILOT_TKOFF_DZ", 100, 0..=500, "", "Dead zone of the throttle above its middle for a takeoff by stick"),
         ("FLIGHT_OPTIONS", 0, 0..=31, "", "Options of the flight"),
         ("FLTMODE_GCSBLOCK", 0, 0..=16777215, "", "Modes that a ground station must not choose"),
-        ("RC_OPTIONS", 32, 0..=16383, "", "Options of the receiver"),
+        ("RC_OPTIONS", 32, 0..=32767, "", "Options of the receiver"),
         ("RC_PROTOCOLS", 1, 0..=65535, "", "Protocols of the receiver"),
         ("RC_SPEED", 490, 50..=490, "Hz", "Rate of motor pulses"),
     ]),
@@ -96,8 +96,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
     ], whole [
         ("AVOID_ANGLE_MAX", 1000, 0..=4500, "cdeg", "Largest lean away from obstacles in AltHold"),
         ("AVOID_BEHAVE", 0, 0..=1, "", "Slide along obstacles or stop; here sticks slide and Guided stops"),
-        ("FENCE_ALT_MAX_TP", 1, 0..=3, "", "What FENCE_ALT_MAX is above; here home"),
-        ("FENCE_ALT_MIN_TP", 1, 0..=3, "", "What FENCE_ALT_MIN is above; here home"),
         ("RALLY_INCL_HOME", 1, 0..=1, "", "Home counts as a rally point"),
         ("FS_DR_ENABLE", 2, 0..=6, "", "Action when only dead reckoning is left; the estimate counts as lost then, see FS_EKF_ACTION"),
         ("ARMING_NEED_LOC", 0, 0..=1, "", "A place is needed to arm; modes that fly by it need one in any case"),

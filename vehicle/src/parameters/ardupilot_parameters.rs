@@ -5,7 +5,7 @@ use core::convert::identity;
 use super::ConductParameter;
 use super::conduct_parameter::{bitmask, choice, real, switch, whole};
 use crate::radio::RadioLossAction;
-use crate::vehicle::{Action, Conduct, FenceOptions, FenceParts, FenceStart};
+use crate::vehicle::{Action, Conduct, FenceDatum, FenceOptions, FenceParts, FenceStart};
 
 /// Parameters that ArduPilot has in place of those of PX4 with other numbers.
 #[rustfmt::skip] // One line per parameter reads as the table that it is.
@@ -13,8 +13,10 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     switch!("FENCE_ENABLE", failsafe.fence_enabled, "Enable the fence"),
     bitmask!("FENCE_TYPE", FENCE_PARTS, failsafe.fence_parts, bits, parts, "Enabled parts of the fence"),
     bitmask!("FENCE_OPTIONS", FENCE_OPTIONS, failsafe.fence_options, option_bits, options, "Options of the fence"),
-    real!("FENCE_ALT_MAX", None, -1.0..=10_000.0, failsafe.fence_height_m, "m", "Height of the fence above home; 0 disables it, a negative one forbids arming"),
-    real!("FENCE_ALT_MIN", None, -1000.0..=10_000.0, failsafe.fence_floor_m, "m", "Lowest height above home, once the vehicle has been above it, except for landings"),
+    real!("FENCE_ALT_MAX", None, -1.0..=10_000.0, failsafe.fence_height_m, "m", "Height of the fence above FENCE_ALT_MAX_TP; 0 disables it, a negative one forbids arming"),
+    choice!("FENCE_ALT_MAX_TP", FENCE_DATUMS, failsafe.fence_height_from, "What FENCE_ALT_MAX is above"),
+    real!("FENCE_ALT_MIN", None, -1000.0..=10_000.0, failsafe.fence_floor_m, "m", "Lowest height above FENCE_ALT_MIN_TP, once the vehicle has been above it, except for landings"),
+    choice!("FENCE_ALT_MIN_TP", FENCE_DATUMS, failsafe.fence_floor_from, "What FENCE_ALT_MIN is above"),
     real!("FENCE_RADIUS", None, -1.0..=100_000.0, failsafe.fence_radius_m, "m", "Radius of the fence around home; 0 disables it, a negative one forbids arming"),
     real!("FENCE_MARGIN", None, 0.0..=1000.0, failsafe.fence_margin_m, "m", "How far inside of the fence sticks stop, and how far above its floor the vehicle must have been for that to count"),
     choice!("FENCE_AUTOENABLE", FENCE_STARTS, failsafe.fence_starts, "When the fence switches itself on"),
@@ -97,6 +99,12 @@ const FENCE_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::TraceOrReturn, 3, "SmartRTL or return"),
     (Action::BrakeOrLand, 4, "Brake or land"),
     (Action::TraceOrLand, 5, "SmartRTL or land"),
+];
+const FENCE_DATUMS: &[(FenceDatum, i32, &str)] = &[
+    (FenceDatum::Home, 1, "Home"),
+    (FenceDatum::SeaLevel, 0, "Sea level"),
+    (FenceDatum::Origin, 2, "The origin"),
+    (FenceDatum::Ground, 3, "The ground below the vehicle"),
 ];
 const FENCE_STARTS: &[(FenceStart, i32, &str)] = &[
     (FenceStart::Never, 0, "Never"),

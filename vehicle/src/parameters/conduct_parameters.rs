@@ -8,7 +8,7 @@ use crate::vehicle::Action;
 #[rustfmt::skip] // One line per parameter reads as the table that it is.
 pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
     real!("MIS_TAKEOFF_ALT", None, 0.5..=1000.0, takeoff_height_m, "m", "Height above home of a takeoff without an altitude of its own"),
-    real!("COM_OF_LOSS_T", Some(("GUID_TIMEOUT", 1.0)), 0.1..=60.0, set_point_timeout_s, "s", "Time without set-points after which they count as lost"),
+    real!("COM_OF_LOSS_T", Some(("GUID_TIMEOUT", 1.0)), 0.1..=600.0, set_point_timeout_s, "s", "Time without set-points after which they count as lost"),
     choice!("COM_OBL_RC_ACT", SET_POINTS_ACTIONS, failsafe.set_points_lost, "Action when set-points are lost"),
     real!("COM_DL_LOSS_T", Some(("FS_GCS_TIMEOUT", 1.0)), 1.0..=300.0, failsafe.ground_station_timeout_s, "s", "Time without heartbeats after which the ground station counts as lost"),
     real!("BAT_LOW_THR", None, 0.0..=0.9, failsafe.battery_low, "norm", "Remaining charge at which the battery is low"),

@@ -87,7 +87,7 @@ pub static ARDUPILOT_MODE_PARAMETERS: &[ConductParameter] = &[
     bitmask!("CIRCLE_OPTIONS", CIRCLE_OPTIONS, orbit.options, u32::from, options, "Options of the circle mode"),
     bitmask!("GUID_OPTIONS", GUIDED_OPTIONS, guided_options, u32::from, options, "Options of the guided mode"),
     bitmask!("AUTO_OPTIONS", AUTO_OPTIONS, auto_options, u32::from, options, "Options of Auto; arming and taking off in it are always allowed"),
-    real!("PILOT_TKOFF_ALT", None, 0.0..=1000.0, pilot_takeoff_m, 100.0, "cm", "Height above the ground to which a manual takeoff continues by itself; 0: it does not").also(&[("PILOT_TKO_ALT_M", 1.0)]),
+    real!("PILOT_TKO_ALT_M", Some(("PILOT_TKOFF_ALT", 100.0)), 0.0..=10.0, pilot_takeoff_m, "m", "Height above the ground to which a manual takeoff continues by itself; 0: it does not").also(&[("PILOT_TKO_ALT_M", 1.0)]),
     bitmask!("PILOT_THR_BHV", THROTTLE, sticks.throttle_behaviour, u32::from, options, "Further functions of the throttle: value 2 lets a throttle above 70 % break off a landing, 4 disarms soon after a manual landing, otherwise after DISARM_DELAY; 1 has no effect"),
     switch!("LAND_REPOSITION", sticks.move_landings, "Sticks move the place of a landing and turn the nose on the way down"),
     bitmask!("RTL_OPTIONS", RETURN_OPTIONS, return_home.options, u32::from, options, "Options of a return: value 4 ignores the yaw stick"),

@@ -92,6 +92,8 @@ pub static SIMULATION_PARAMETERS: &[ConductParameter] = &[
     real!("SIM_TWIST_Z", None, -1000.0..=1000.0, simulated.pushes.twist.acceleration.z, "rad/s^2", "Twist, about the yaw axis"),
     whole!("SIM_TWIST_TIME", 0..=600_000, simulated.pushes.twist.time_ms, u32, "Duration of the twist (ms); setting it starts the twist, and it returns to 0 at the end"),
     whole!("SIM_ESC_ARM_RPM", 0..=10_000, takeoff_check.idling, u16, "Speed of armed, idling motors, as their telemetry reports it"),
+    whole!("GPS1_TYPE", 0..=26, simulated.errors.switches.gps_kind, u8, "Kind of GPS receiver; 0: none, 14: fixes come by GPS_INPUT, anything else: the simulated one"),
+    whole!("GPS_TYPE", 0..=26, simulated.errors.switches.gps_kind, u8, "Kind of GPS receiver; the same as GPS1_TYPE").other(),
     switch!("SIM_GPS1_ENABLE", simulated.errors.switches.gps, "Whether the GPS receiver works"),
     switch!("SIM_GPS_DISABLE", simulated.errors.switches.gps, "Whether the GPS receiver is silent; the opposite of SIM_GPS1_ENABLE", not).other(),
     whole!("SIM_GPS1_NUMSATS", 0..=40, simulated.errors.gps_satellites, u8, "Satellites that the receiver says it uses"),

@@ -149,6 +149,13 @@ impl Source<'_> {
         self.site.place(self.item).unwrap_or_default()
     }
 
+    /// The place of a step that is flown to: ArduPilot takes an altitude of exactly zero for the present one.
+    fn way_place(&self) -> Place {
+        let keeps = self.site.identity.is_ardupilot() && self.item.position[2] == 0.0;
+        let place = self.place();
+        Place { altitude: place.altitude.filter(|_| !keeps), ..place }
+    }
+
     fn look_at(&self, item: &MissionItem) -> Option<Look> {
         self.site.place(item).map(Look::At)
     }
@@ -156,7 +163,7 @@ impl Source<'_> {
 
 fn waypoint(source: &Source<'_>) -> Step {
     Step::Navigate(Navigate::Waypoint(Waypoint {
-        place: source.place(),
+        place: source.way_place(),
         hold_s: source.value(1),
         acceptance_radius_m: Some(source.value(2)).filter(|radius_m| *radius_m > 0.0),
         heading_rad: source.heading_rad(),
@@ -164,16 +171,20 @@ fn waypoint(source: &Source<'_>) -> Step {
 }
 
 fn loiter(source: &Source<'_>) -> Step {
-    Step::Navigate(Navigate::Loiter { place: source.place(), heading_rad: source.heading_rad() })
+    Step::Navigate(Navigate::Loiter { place: source.way_place(), heading_rad: source.heading_rad() })
 }
 
 fn turns(source: &Source<'_>) -> Step {
     let radius_m = Some(source.value(3)).filter(|radius_m| *radius_m != 0.0);
-    Step::Navigate(Navigate::LoiterTurns(Turns { place: source.place(), turns: source.value(1), radius_m }))
+    Step::Navigate(Navigate::LoiterTurns(Turns {
+        place: source.way_place(),
+        turns: source.value(1),
+        radius_m,
+    }))
 }
 
 fn loiter_time(source: &Source<'_>) -> Step {
-    Step::Navigate(Navigate::LoiterTime { place: source.place(), time_s: source.value(1) })
+    Step::Navigate(Navigate::LoiterTime { place: source.way_place(), time_s: source.value(1) })
 }
 
 fn land(source: &Source<'_>) -> Step {
@@ -219,13 +230,13 @@ fn turn(source: &Source<'_>) -> Step {
 }
 
 fn spline(source: &Source<'_>) -> Step {
-    Step::Navigate(Navigate::Spline { place: source.place(), hold_s: source.value(1) })
+    Step::Navigate(Navigate::Spline { place: source.way_place(), hold_s: source.value(1) })
 }
 
 /// NAV_PAYLOAD_PLACE: how far it may descend below its altitude; 0: to the ground.
 fn place_payload(source: &Source<'_>) -> Step {
     let descent_m = Some(source.value(1)).filter(|descent_m| *descent_m > 0.0);
-    Step::Navigate(Navigate::PlacePayload { place: source.place(), descent_m })
+    Step::Navigate(Navigate::PlacePayload { place: source.way_place(), descent_m })
 }
 
 fn jump(source: &Source<'_>) -> Step {

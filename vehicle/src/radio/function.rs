@@ -49,6 +49,8 @@ pub enum Function {
     LockGimbal,
     /// Moves the landing gear.
     LandingGear,
+    /// Takes what a ground station sends in place of the radio's pulses, or not.
+    Overrides,
     /// Lets the parachute open.
     ParachuteEnable,
     /// Releases it.
@@ -91,6 +93,7 @@ const FUNCTIONS: &[(u32, Function)] = &[
     (40, Function::Proximity),
     (41, Function::Arming),
     (42, Function::Mode(21)),
+    (46, Function::Overrides),
     (52, Function::Mode(1)),
     (55, Function::Mode(4)),
     (56, Function::Mode(5)),

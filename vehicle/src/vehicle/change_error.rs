@@ -25,6 +25,9 @@ pub enum ChangeError {
     /// Ideal sensors have no readings that could be wrong.
     #[error("ideal sensors have no errors; start with --sensors realistic")]
     IdealSensors,
+    /// With ideal sensors the vehicle knows its place.
+    #[error("ideal sensors need no fixes by GPS_INPUT; start with --sensors realistic")]
+    IdealReceiver,
     /// The battery is part of the plant, which does not jump.
     #[error("the rotors follow the battery's voltage (FRAME_BATT_SAG): its charge cannot be set in flight")]
     BatteryOfPlant,

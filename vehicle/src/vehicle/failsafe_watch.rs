@@ -183,8 +183,14 @@ impl Failsafe {
     /// Whether a user may choose a mode now.
     ///
     /// # Errors
-    /// [`Refusal::TemporarilyRejected`] while the place is not known.
+    /// [`Refusal::TemporarilyRejected`] while the place is not known; [`Refusal::Failed`] on the ground, where ArduPilot refuses it of an
+    /// armed vehicle.
     pub fn may_enter(&self, situation: &Situation, mode: Mode) -> Result<(), Refusal> {
+        let stands = situation.armed && !situation.flies() && situation.identity.is_ardupilot();
+        if stands && mode.needs() == Needs::Place && !situation.can_fly(mode) {
+            let name = situation.identity.mode_name(mode);
+            return Err(Refusal::Failed(format!("{name} mode rejected: requires position")));
+        }
         if !situation.flies() || mode == Mode::Land {
             return Ok(());
         }

@@ -125,7 +125,7 @@ fn keep_height(situation: &Situation, fence: &Fence, down_m_s: f64) -> f64 {
         down_m_s = down_m_s.max(-allowed(fence.height_m - height_m));
     }
     if situation.fence_parts().floor && situation.fence_floor_counts {
-        down_m_s = down_m_s.min(allowed(height_m - settings.fence_floor_m));
+        down_m_s = down_m_s.min(allowed(height_m - situation.fence_floor_m()));
     }
     down_m_s
 }

@@ -141,15 +141,15 @@ impl FenceWatch {
         self.floor_counts = in_the_air
             && !lands
             && !self.floor_is_off
-            && (self.floor_counts || height_m(situation) > settings.fence_floor_m + settings.fence_margin_m);
+            && (self.floor_counts
+                || height_m(situation) > situation.fence_floor_m() + settings.fence_margin_m);
     }
 
     /// The floor, if the vehicle is below it.
     fn below_floor(&self, situation: &Situation) -> Option<Breach> {
-        let settings = &situation.conduct.failsafe;
         let looked_at = situation.fence_is_on && situation.fence_parts().floor && self.floor_counts;
-        (looked_at && height_m(situation) < settings.fence_floor_m)
-            .then_some(Breach::Floor(settings.fence_floor_m))
+        let floor_m = situation.fence_floor_m();
+        (looked_at && height_m(situation) < floor_m).then_some(Breach::Floor(floor_m))
     }
 
     /// Looks whether the vehicle is, or cannot help coming, where it must not be. Returns a breach that was ahead and is crossed now.

@@ -150,8 +150,8 @@ pub use battery_pack::BatteryPack;
 pub use change_error::ChangeError;
 pub use conduct::Conduct;
 pub use failsafe::{
-    Action, BatteryActions, BatteryLimits, Cause, Failsafe, FailsafeSettings, FenceOptions, FenceParts,
-    FenceStart, Weakness,
+    Action, BatteryActions, BatteryLimits, Cause, Failsafe, FailsafeSettings, FenceDatum, FenceOptions,
+    FenceParts, FenceStart, Weakness,
 };
 pub use fence_watch::FenceRecord;
 pub use flight_times::FlightTimes;

@@ -7,6 +7,7 @@ use quadrotor::{GRAVITY_M_S2, Outputs, RigidBody};
 use super::arming_obstacle::{ArmingObstacle, ArmingSubject as Subject};
 use super::closed_loop::ClosedLoop;
 use super::motion::wrapped;
+use crate::estimation::gps::GpsFix;
 use crate::estimation::{
     Estimate, IdealSensors, InstrumentHealth, Navigation, Readings, SensorErrors, TrueMotion, Validity,
 };
@@ -64,6 +65,13 @@ impl Perception {
             None => self.ideal_sensors.step(self.truth.time_us, faults),
         }
         self.outputs = self.known(closed_loop);
+    }
+
+    /// A GPS fix comes from outside.
+    pub fn receive_fix(&mut self, fix: GpsFix) {
+        if let Some(navigation) = &mut self.navigation {
+            navigation.receive_fix(fix);
+        }
     }
 
     /// Looks at the same motion again: the closed loop has another configuration.

@@ -120,6 +120,9 @@ fn breach_on<'a>(
     })
 }
 
+/// As far below the ground, m, a place is on it: heights are rounded on their way.
+const GROUND_TOLERANCE_M: f64 = 0.05;
+
 /// Refuses a mission that cannot be flown to its end: places that are too far away, or below the ground.
 ///
 /// # Errors
@@ -140,12 +143,14 @@ pub fn check_reach(situation: &Situation, program: &Program) -> Result<(), PlanF
                 return Err(PlanFault::of_item(index, FaultCode::InvalidParameter(parameter), reason));
             }
         }
-        // A landing ends where the ground is.
+        // A landing ends where the ground is, and ArduPilot's takeoff climbs from wherever it begins.
+        if matches!(step, Navigate::Land { .. } | Navigate::Takeoff { travels: false, .. }) {
+            continue;
+        }
         let here_m = situation.outputs.position_m;
         let ground_z_m = situation.terrain.z_m(place.horizontal_m.unwrap_or([here_m.x, here_m.y]));
         let below_m = place.down_m(situation.home.position_m.z).map(|down_m| down_m - ground_z_m);
-        let below_m = below_m.filter(|below_m| *below_m > 0.0);
-        if let Some(below_m) = below_m.filter(|_| !matches!(step, Navigate::Land { .. })) {
+        if let Some(below_m) = below_m.filter(|below_m| *below_m > GROUND_TOLERANCE_M) {
             let reason = format!("the place is {below_m:.1} m below the ground: raise it");
             return Err(PlanFault::of_item(index, FaultCode::InvalidParameter(7), reason));
         }

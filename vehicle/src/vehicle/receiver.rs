@@ -62,6 +62,8 @@ pub struct Receiver {
     overrides: [Option<(u16, u64)>; CHANNELS],
     /// Sticks of MANUAL_CONTROL, and when they came, µs.
     joystick: Option<(Sticks, u64)>,
+    /// Whether a switch keeps overrides off.
+    refuses_overrides: bool,
     first: Option<Source>,
     /// When sticks were received last, µs; `None`: never.
     received_us: Option<u64>,
@@ -78,6 +80,14 @@ impl Receiver {
         &self.now
     }
 
+    /// Takes overrides from now on, or none, and gives all channels back.
+    pub fn switch_overrides(&mut self, taken: bool) {
+        self.refuses_overrides = !taken;
+        if !taken {
+            self.overrides = Default::default();
+        }
+    }
+
     /// The radio sends these pulses from now on, µs; 0 where there is no channel.
     pub fn receive(&mut self, pulses: Pulses) {
         self.radio = Some(pulses);
@@ -90,6 +100,9 @@ impl Receiver {
 
     /// Overrides channels: `None` leaves one as it is, 0 gives it back.
     pub fn take_overrides(&mut self, pulses: &[Option<u16>; CHANNELS], time_us: u64) {
+        if self.refuses_overrides {
+            return;
+        }
         for (channel, pulse) in self.overrides.iter_mut().zip(pulses) {
             match pulse {
                 None => {}
@@ -216,12 +229,10 @@ impl Receiver {
         timeout_s: f64,
         time_us: u64,
     ) -> Option<Pulses> {
-        if settings.failure.is_silence() {
-            return None;
-        }
         let life_s = if identity.is_ardupilot() { settings.override_s } else { timeout_s };
         let counts = |taken_us: u64| life_s < 0.0 || time_us.saturating_sub(taken_us) < (life_s * 1e6) as u64;
-        let mut radio = self.radio;
+        // A receiver that fails says nothing of what a ground station sends.
+        let mut radio = self.radio.filter(|_| !settings.failure.is_silence());
         if settings.failure == RadioFailure::LowThrottle {
             let lost = radio.get_or_insert([MIDDLE_US; CHANNELS]);
             if let Some(pulse) =

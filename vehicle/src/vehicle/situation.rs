@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use quadrotor::{Configuration, EasedLimits, Limits, Outputs};
 
 use super::conduct::Conduct;
-use super::failsafe::{Action, FenceParts};
+use super::failsafe::{Action, FenceDatum, FenceParts};
 use super::home::Home;
 use super::notice::Refusal;
 use super::receiver::Pilot;
@@ -266,7 +266,34 @@ impl<'a> Situation<'a> {
             inclusions: settings.fence_inclusions(),
             home_m: self.home.position_m,
             radius_m: of(parts.distance, settings.fence_radius_m),
-            height_m: of(parts.height, settings.fence_height_m),
+            height_m: of(parts.height, self.fence_height_m()),
+        }
+    }
+
+    /// The highest that the fence allows above home, m; 0: any height. One that lies below home forbids all.
+    pub fn fence_height_m(&self) -> f64 {
+        let settings = &self.conduct.failsafe;
+        let limit_m = settings.fence_height_m;
+        match settings.fence_height_from {
+            datum if limit_m > 0.0 => self.above_home_m(datum, limit_m).max(f64::MIN_POSITIVE),
+            _ => limit_m,
+        }
+    }
+
+    /// The lowest that the fence allows above home, m.
+    pub fn fence_floor_m(&self) -> f64 {
+        let settings = &self.conduct.failsafe;
+        self.above_home_m(settings.fence_floor_from, settings.fence_floor_m)
+    }
+
+    /// A height, m, as one above home.
+    fn above_home_m(&self, datum: FenceDatum, height_m: f64) -> f64 {
+        let home_z_m = self.home.position_m.z;
+        match datum {
+            FenceDatum::Home => height_m,
+            FenceDatum::SeaLevel => height_m - self.frame.origin().altitude_m + home_z_m,
+            FenceDatum::Origin => height_m + home_z_m,
+            FenceDatum::Ground => height_m + home_z_m - self.terrain.z_below_m(&self.outputs.position_m),
         }
     }
 

@@ -24,29 +24,66 @@ const INT16: u8 = 2;
 const INT32: u8 = 3;
 const REAL32: u8 = 4;
 
-/// All parameters, packed.
-pub fn pack(context: &Context) -> Vec<u8> {
-    let count = context.parameters.table().entries().len();
-    let mut bytes = Vec::with_capacity(8 + 16 * count);
-    for number in [MAGIC, count as u16, count as u16] {
+/// What a client asks for behind a question mark, as ArduPilot's do: `?withdefaults=1&start=100&count=50`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extent {
+    with_defaults: bool,
+    start: usize,
+    count: usize,
+}
+
+impl Extent {
+    /// All parameters, without defaults.
+    pub const ALL: Self = Self { with_defaults: false, start: 0, count: usize::MAX };
+
+    /// What options ask for, up to one that is not known or is not a number.
+    pub fn read(options: &str) -> Self {
+        let mut extent = Self::ALL;
+        for option in options.split('&') {
+            let Some((name, Ok(number))) = option.split_once('=').map(|(name, text)| (name, text.parse()))
+            else {
+                break;
+            };
+            match name {
+                "withdefaults" => extent.with_defaults = number != 0,
+                "start" => extent.start = number,
+                "count" => extent.count = number,
+                _ => break,
+            }
+        }
+        extent
+    }
+}
+
+/// Parameters, packed. A default is what the vehicle was started with; it follows the value where the two differ.
+pub fn pack(context: &Context, extent: Extent) -> Vec<u8> {
+    let total = context.parameters.table().entries().len();
+    let numbers = extent.start.min(total)..extent.start.saturating_add(extent.count).min(total);
+    let mut bytes = Vec::with_capacity(8 + 16 * numbers.len());
+    let magic = if extent.with_defaults { MAGIC_WITH_DEFAULTS } else { MAGIC };
+    for number in [magic, numbers.len() as u16, total as u16] {
         bytes.extend(number.to_le_bytes());
     }
     let mut previous = "";
-    for index in 0..count {
+    for index in numbers {
         let Some(value) = context.parameters.value(index, &context.vehicle) else { continue };
         let Some(entry) = context.parameters.table().entries().get(index) else { continue };
+        let initial = context.parameters.initial().get(index);
+        let default = initial.filter(|initial| extent.with_defaults && **initial != value);
         let name = entry.id;
         let shared = name.bytes().zip(previous.bytes()).take_while(|(one, other)| one == other).count();
         // The rest has at least one letter, and each half of the byte holds 15.
         let shared = shared.min(name.len().saturating_sub(1)).min(15);
         let rest = name.as_bytes().get(shared..).unwrap_or_default();
-        bytes.push(match value {
+        let kind = match value {
             Value::Integer(_) => INT32,
             Value::Real(_) => REAL32,
-        });
+        };
+        bytes.push(if default.is_some() { kind | HAS_DEFAULT } else { kind });
         bytes.push(shared as u8 | (rest.len().saturating_sub(1) as u8) << 4);
         bytes.extend(rest);
         bytes.extend(value.bytes());
+        bytes.extend(default.iter().flat_map(|default| default.bytes()));
         previous = name;
     }
     bytes

@@ -16,7 +16,7 @@
 use vehicle::plan::PlanKind;
 
 use super::message::Nak;
-use super::parameter_pack;
+use super::parameter_pack::{self, Extent};
 use super::plan_pack;
 use super::plan_text;
 use crate::context::Context;
@@ -71,16 +71,19 @@ pub fn writable(path: &str) -> Result<String, Nak> {
 /// The bytes of a file that is made when it is read, if the path is that of one.
 pub fn made_file(context: &Context, path: &str) -> Option<Vec<u8>> {
     let name = plain(path).ok()?;
-    // ArduPilot's clients put options behind a question mark.
-    let name = name
-        .strip_prefix("@PARAM/param.pck")
-        .filter(|rest| rest.starts_with('?'))
-        .map_or(name.as_str(), |_| "@PARAM/param.pck");
+    if let Some(rest) = name.strip_prefix(parameter_pack::PATH) {
+        let extent = match rest.strip_prefix('?') {
+            Some(options) => Extent::read(options),
+            None if rest.is_empty() => Extent::ALL,
+            None => return None,
+        };
+        return Some(parameter_pack::pack(context, extent));
+    }
+    let name = name.as_str();
     if let Some(kind) = plan_pack::kind_of(name) {
         return Some(plan_pack::pack(context, kind));
     }
     Some(match name {
-        "@PARAM/param.pck" => parameter_pack::pack(context),
         camera_definition::NAME => camera_definition::render(),
         "metadata/general.json" => context.parameters.metadata().general.clone(),
         "metadata/parameters.json" => context.parameters.metadata().parameters.clone(),

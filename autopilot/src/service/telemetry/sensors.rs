@@ -35,6 +35,10 @@ pub fn gps_raw_int(vehicle: &Vehicle) -> MavMessage {
     let course_rad = libm::atan2(ground_m_s.y, ground_m_s.x);
     let millimetres = |accuracy_m: f64| (accuracy_m * 1e3).round() as u32;
     let hundredths = |value: f64| (value * 1e2).round() as u16;
+    let (speed, course) = match fix.tells_velocity() {
+        true => (hundredths(ground_m_s.norm()), (heading_deg(course_rad) * 1e2).floor() as u16),
+        false => (u16::MAX, u16::MAX),
+    };
     MavMessage::GPS_RAW_INT(GPS_RAW_INT_DATA {
         time_usec: fix.time_us,
         lat: scaled_degrees(place.latitude_deg),
@@ -42,8 +46,8 @@ pub fn gps_raw_int(vehicle: &Vehicle) -> MavMessage {
         alt: altitude_mm,
         eph: hundredths(HORIZONTAL_DILUTION),
         epv: hundredths(VERTICAL_DILUTION),
-        vel: hundredths(ground_m_s.norm()),
-        cog: (heading_deg(course_rad) * 1e2).floor() as u16,
+        vel: speed,
+        cog: course,
         fix_type: GpsFixType::GPS_FIX_TYPE_3D_FIX,
         satellites_visible: fix.satellites,
         alt_ellipsoid: altitude_mm,

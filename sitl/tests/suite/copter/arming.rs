@@ -2,6 +2,8 @@
 
 use super::flier::*;
 use mavlink::dialects::ardupilotmega::{MavCmd, MavResult};
+use vehicle::identity::Identity;
+use vehicle::plan::{Plan, PlanKind};
 
 const ARM: [f32; 7] = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
 
@@ -99,4 +101,26 @@ fn there_is_no_safety_switch_to_be_switched_on() {
     }
     flier.change_mode(GUIDED);
     assert_eq!(flier.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ARM), ACCEPTED);
+}
+
+/// Suite: TerrainDBPreArm: a mission above the ground needs something that knows the ground.
+#[test]
+fn a_mission_above_an_unknown_ground_forbids_arming() {
+    let mut start = crate::common::settings(Identity::ArduPilot);
+    let mut items = mission(&start, &[(22, 0.0, 0.0, 20.0), (16, 20.0, 0.0, 20.0)]).items().to_vec();
+    items[2].frame = vehicle::plan::frame::GLOBAL_TERRAIN;
+    start.plans.set(PlanKind::Mission, Plan::new(items));
+    let mut flier = Flier::with(&start);
+    let disabled = |flier: &mut Flier| {
+        flier.fly(6.0);
+        flier.obstacles().iter().any(|text| text.contains("terrain disabled"))
+    };
+    flier.set("RNGFND1_TYPE", 1.0);
+    assert!(!disabled(&mut flier));
+    flier.set("TERRAIN_ENABLE", 0.0);
+    assert!(!disabled(&mut flier), "a rangefinder knows it");
+    flier.set("WP_RFND_USE", 0.0);
+    assert!(disabled(&mut flier));
+    flier.set_all(&[("WP_RFND_USE", 1.0), ("RNGFND1_TYPE", 0.0)]);
+    assert!(disabled(&mut flier), "there is none");
 }

@@ -193,3 +193,38 @@ fn a_fence_that_switches_itself_on_is_off_after_the_landing() {
         assert!(flier.vehicle().fence().is_none(), "{start}");
     }
 }
+
+/// Suite: MaxAltFence, FenceAltFrameComparison: what the limits are above.
+#[test]
+fn heights_of_the_fence_are_above_what_is_said() {
+    const SEA_LEVEL: f64 = 0.0;
+    let mut flier = Flier::new();
+    let home_m = flier.vehicle().frame().origin().altitude_m;
+    flier.set_all(&[("FENCE_ENABLE", 1.0), ("AVOID_ENABLE", 0.0), ("FENCE_TYPE", 9.0)]);
+    flier.set_all(&[
+        ("FENCE_ALT_MAX", 100.0),
+        ("FENCE_ALT_MIN_TP", SEA_LEVEL),
+        ("FENCE_ALT_MIN", home_m + 20.0),
+    ]);
+    assert_eq!(flier.obstacles(), [] as [&str; 0], "20 m above home is below 100 m");
+    flier.set("FENCE_ALT_MIN", home_m + 150.0);
+    assert!(flier.obstacles().iter().any(|text| text.contains("FENCE_ALT_MAX < FENCE_ALT_MIN")));
+    // Home lies 15 m above the origin from here on.
+    flier.set_all(&[("FENCE_TYPE", 1.0), ("FENCE_ALT_MIN_TP", 1.0), ("FENCE_ALT_MIN", -10.0)]);
+    let origin = flier.vehicle().frame().origin();
+    let raised =
+        [0.0, 0.0, 0.0, 0.0, origin.latitude_deg as f32, origin.longitude_deg as f32, (home_m + 15.0) as f32];
+    for (datum, limit_m, above_origin_m) in
+        [(SEA_LEVEL, home_m + 40.0, 40.0), (1.0, 30.0, 45.0), (2.0, 40.0, 40.0), (3.0, 35.0, 35.0)]
+    {
+        flier.set_all(&[("FENCE_ALT_MAX_TP", datum), ("FENCE_ALT_MAX", limit_m)]);
+        flier.take_off(10.0, LOITER);
+        assert_eq!(flier.command(MavCmd::MAV_CMD_DO_SET_HOME, raised), ACCEPTED);
+        flier.rc(3, 1800);
+        flier.wait_mode(RTL, 120.0);
+        let height_m = -flier.vehicle().truth().position_m.z;
+        assert!((height_m - above_origin_m).abs() < 3.0, "{datum}: {height_m} m");
+        flier.rc(3, 1000);
+        flier.wait_disarmed(300.0);
+    }
+}

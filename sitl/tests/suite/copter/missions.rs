@@ -166,3 +166,82 @@ fn items_and_tags_that_there_are_not_are_refused() {
     let no_tag = [65_536.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     assert_eq!(flier.command(MavCmd::MAV_CMD_DO_JUMP_TAG, no_tag), 2, "denied");
 }
+
+/// Suite: TakeoffWithLocation: a takeoff goes nowhere, and what follows it without a place or an altitude stays where that ends.
+#[test]
+fn an_altitude_of_zero_is_the_present_one() {
+    let rows = [
+        (TAKEOFF, 10.0, 10.0, 20.0),
+        (command::NAV_LOITER_TIME, 0.0, 0.0, 0.0),
+        (WAYPOINT, 30.0, 0.0, 0.0),
+        (RETURN, 0.0, 0.0, 0.0),
+    ];
+    let mut start = settings(Identity::ArduPilot);
+    let mut items = mission(&start, &rows).items().to_vec();
+    items[2].parameters[0] = 10.0;
+    items[2].position = [0.0; 3];
+    start.plans.set(PlanKind::Mission, vehicle::plan::Plan::new(items));
+    let mut flier = Flier::with(&start);
+    flier.change_mode(LOITER);
+    flier.arm();
+    flier.change_mode(AUTO);
+    let current = |flier: &Flier| flier.vehicle().mission_status().current;
+    flier.wait("the top", 60.0, |flier| current(flier) == 2);
+    assert!(flier.distance_m() < 1.0, "{} m", flier.distance_m());
+    while current(&flier) < 4 {
+        flier.fly(0.5);
+        assert!((18.0..21.0).contains(&flier.height_m()), "{} m", flier.height_m());
+    }
+    assert!((flier.distance_m() - 30.0).abs() < 3.0, "{} m", flier.distance_m());
+    flier.wait_home();
+}
+
+/// Suite: mission_NAV_LOITER_TURNS_direction, mission_NAV_LOITER_TURNS_speed: told where the turns begin, at the edge of the circle.
+#[test]
+fn turns_are_told_and_go_the_way_that_the_sign_says() {
+    for sign in [1.0, -1.0] {
+        let mut start = settings(Identity::ArduPilot);
+        let rows = [
+            (TAKEOFF, 0.0, 0.0, 20.0),
+            (command::NAV_LOITER_TURNS, 40.0, 0.0, 20.0),
+            (RETURN, 0.0, 0.0, 0.0),
+        ];
+        let mut items = mission(&start, &rows).items().to_vec();
+        items[2].parameters = [1.0, 0.0, 20.0 * sign, 0.0];
+        start.plans.set(PlanKind::Mission, vehicle::plan::Plan::new(items));
+        let mut flier = Flier::with(&start);
+        flier.set("WP_SPD", 5.0);
+        flier.change_mode(AUTO);
+        flier.arm();
+        flier.wait_text("Mission: circling", 120.0);
+        assert!((flier.distance_m() - 20.0).abs() < 1.0, "{} m", flier.distance_m());
+        let bearing_rad = |flier: &Flier| {
+            let place_m = flier.vehicle().outputs().position_m;
+            libm::atan2(place_m.y, place_m.x - 40.0)
+        };
+        let (mut before_rad, mut swept_rad, mut seconds) = (bearing_rad(&flier), 0.0, 0.0);
+        while flier.vehicle().mission_status().current == 2 {
+            flier.fly(0.1);
+            seconds += 0.1;
+            let moved_rad = bearing_rad(&flier) - before_rad;
+            swept_rad += libm::atan2(libm::sin(moved_rad), libm::cos(moved_rad));
+            before_rad += moved_rad;
+        }
+        assert!((swept_rad * sign).to_degrees() > 340.0, "{swept_rad} rad");
+        // A turn of 2 π 20 m at 5 m/s takes 25 s.
+        assert!((15.0..50.0).contains(&seconds), "{seconds} s");
+    }
+}
+
+/// DroneKit's example of a mission file begins so: the takeoff climbs as high as takeoffs without a height do.
+#[test]
+fn a_takeoff_to_no_height_climbs() {
+    let mut start = settings(Identity::ArduPilot);
+    let rows = [(TAKEOFF, 0.0, 0.0, 0.0), (WAYPOINT, 10.0, 0.0, 15.0), (RETURN, 0.0, 0.0, 0.0)];
+    start.plans.set(PlanKind::Mission, mission(&start, &rows));
+    let mut flier = Flier::with(&start);
+    flier.change_mode(AUTO);
+    flier.arm();
+    flier.wait("the waypoint", 60.0, |flier| flier.vehicle().mission_status().current == 3);
+    assert!((flier.height_m() - 15.0).abs() < 1.0, "{} m", flier.height_m());
+}

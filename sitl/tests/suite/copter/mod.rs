@@ -6,6 +6,7 @@ mod equipment;
 mod estimation;
 mod fences;
 mod flier;
+mod gps_input;
 mod guided;
 mod missions;
 mod modes;

@@ -246,3 +246,37 @@ fn speeds_of_a_mission_hold_when_auto_is_armed_again() {
     flier.wait("the way", 60.0, |flier| flier.distance_m() > 20.0);
     assert!((flier.speed_m_s() - 2.0).abs() < 0.1, "{} m/s", flier.speed_m_s());
 }
+
+/// Suite: ModeAllowsEntryWhenNoPilotInput.
+#[test]
+fn a_lost_pilot_gets_no_mode_that_only_he_could_fly() {
+    let mut flier = Flier::new();
+    flier.set("FS_THR_ENABLE", 4.0);
+    flier.take_off(20.0, GUIDED);
+    flier.rc(3, 200);
+    flier.wait_text("Radio Failsafe", 5.0);
+    flier.change_mode(GUIDED);
+    for mode in [STABILIZE, ACRO] {
+        assert_eq!(flier.ask_mode(mode), FAILED, "{mode}");
+        assert!(flier.has_said("in RC failsafe"), "{:?}", flier.bench.texts());
+    }
+    flier.rc(3, 1500);
+    flier.wait_text("Radio Failsafe Cleared", 5.0);
+    flier.change_mode(STABILIZE);
+    flier.change_mode(LOITER);
+    flier.return_home();
+}
+
+/// Suite: ArmFeatures: an armed vehicle enters no mode that needs a place where it knows none, also on the ground; a disarmed one may.
+#[test]
+fn an_armed_vehicle_without_a_place_enters_no_mode_that_needs_one() {
+    let mut flier = Flier::new();
+    flier.set("SIM_GPS1_ENABLE", 0.0);
+    flier.fly(8.0);
+    flier.change_mode(LOITER);
+    flier.change_mode(STABILIZE);
+    flier.arm();
+    assert_eq!(flier.ask_mode(LOITER), FAILED);
+    assert!(flier.has_said("requires position"), "{:?}", flier.bench.texts());
+    flier.change_mode(ALT_HOLD);
+}

@@ -201,8 +201,14 @@ fn zigzag_flies_across_between_its_ends() {
 /// Suite: PosHoldTakeOff. A moment of throttle is enough.
 #[test]
 fn a_takeoff_by_hand_goes_on_to_its_height() {
+    for (name, height) in [("PILOT_TKOFF_ALT", 700.0), ("PILOT_TKO_ALT_M", 7.0)] {
+        takes_off_by_hand(name, height);
+    }
+}
+
+fn takes_off_by_hand(name: &str, height: f64) {
     let mut flier = Flier::new();
-    flier.set("PILOT_TKOFF_ALT", 700.0);
+    flier.set(name, height);
     flier.change_mode(POSHOLD);
     flier.arm();
     flier.fly(2.0);

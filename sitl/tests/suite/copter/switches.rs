@@ -1,7 +1,7 @@
 //! What switches of the radio do.
 
 use super::flier::*;
-use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage, MavSysStatusSensor};
+use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage, MavSysStatusSensor, RC_CHANNELS_OVERRIDE_DATA};
 use vehicle::plan::PlanKind;
 
 const CIRCLE: u32 = 7;
@@ -136,4 +136,63 @@ fn states(flier: &Flier, sensor: MavSysStatusSensor) -> [bool; 3] {
         _ => None,
     });
     states.expect("a status").map(|sensors| sensors.contains(sensor))
+}
+
+/// RC_CHANNELS_OVERRIDE of the sticks.
+fn override_sticks(flier: &mut Flier, [chan1_raw, chan2_raw, chan3_raw, chan4_raw]: [u16; 4]) {
+    let none = u16::MAX;
+    flier.bench.send(MavMessage::RC_CHANNELS_OVERRIDE(RC_CHANNELS_OVERRIDE_DATA {
+        chan1_raw,
+        chan2_raw,
+        chan3_raw,
+        chan4_raw,
+        chan5_raw: none,
+        chan6_raw: none,
+        chan7_raw: none,
+        chan8_raw: none,
+        ..RC_CHANNELS_OVERRIDE_DATA::default()
+    }));
+}
+
+/// Suite: RCOverridesNoRCReceiver: a ground station's joystick flies a vehicle whose receiver has failed, and is missed after three seconds.
+#[test]
+fn a_joystick_flies_without_a_receiver() {
+    let mut flier = Flier::new();
+    flier.set("SIM_RC_FAIL", 1.0);
+    flier.reboot();
+    let fly = |flier: &mut Flier, seconds: f64, sticks: [u16; 4]| {
+        for _ in 0..(seconds * 10.0) as usize {
+            override_sticks(flier, sticks);
+            flier.fly(0.1);
+        }
+    };
+    fly(&mut flier, 1.0, [1500, 1500, 1000, 1500]);
+    flier.change_mode(LOITER);
+    flier.arm();
+    fly(&mut flier, 8.0, [1500, 1500, 1800, 1500]);
+    assert!(flier.height_m() > 5.0, "{} m", flier.height_m());
+    let before_deg = flier.heading_deg();
+    fly(&mut flier, 2.0, [1500, 1500, 1500, 1400]);
+    assert!(!flier.heads(before_deg, 5.0), "{before_deg} deg");
+    flier.fly(5.0);
+    assert!(flier.has_said("Radio Failsafe"), "{:?}", flier.bench.texts());
+}
+
+/// Suite: RCOverridesClearByPilotInput: switch 46 takes overrides, or keeps them off.
+#[test]
+fn a_switch_keeps_overrides_off() {
+    let mut flier = Flier::new();
+    flier.set("RC9_OPTION", 46.0);
+    let third = |flier: &Flier| flier.vehicle().pilot().pulses.map(|pulses| pulses[2]);
+    for (pulse, taken) in [(2000, 1300), (1000, 1000), (2000, 1300)] {
+        flier.rc(9, pulse);
+        flier.fly(0.5);
+        override_sticks(&mut flier, [u16::MAX, u16::MAX, 1300, u16::MAX]);
+        flier.fly(0.1);
+        assert_eq!(third(&flier), Some(taken), "{pulse}");
+    }
+    // What is there is given back at once.
+    flier.rc(9, 1000);
+    flier.fly(0.5);
+    assert_eq!(third(&flier), Some(1000));
 }

@@ -171,6 +171,19 @@ fn a_traffic_management_is_told_where_it_flies_to() {
     assert!((flying.relative_alt - 20_000).abs() < 1500 && flying.vx > 50, "{flying:?}");
 }
 
+/// Suite: UTMGlobalPositionWaypoint: as soon as a step of a mission is the current one.
+#[test]
+fn the_place_of_a_step_is_told_before_its_way_begins() {
+    let mut flier =
+        with_mission(&[(command::NAV_TAKEOFF, 0.0, 0.0, 20.0), (command::NAV_WAYPOINT, 100.0, 0.0, 20.0)]);
+    flier.change_mode(AUTO);
+    flier.arm();
+    flier.wait("the place", 60.0, |flier| flier.vehicle().mission_status().current == 2);
+    let told = utm_position(&mut flier);
+    let place = flier.vehicle().plans().get(PlanKind::Mission).items()[2].position;
+    assert!((f64::from(told.next_lat) - place[0] * 1e7).abs() < 2.0, "{told:?} {place:?}");
+}
+
 /// On a curve, too, it is told where that leads; off the line is off the curve, not off the straight way.
 #[test]
 fn on_a_spline_its_end_is_told() {

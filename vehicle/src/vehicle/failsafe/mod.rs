@@ -17,5 +17,7 @@ mod state;
 
 pub use action::Action;
 pub use cause::Cause;
-pub use settings::{BatteryActions, BatteryLimits, FailsafeSettings, FenceOptions, FenceParts, FenceStart};
+pub use settings::{
+    BatteryActions, BatteryLimits, FailsafeSettings, FenceDatum, FenceOptions, FenceParts, FenceStart,
+};
 pub use state::{Change, Failsafe, Weakness};

@@ -47,11 +47,17 @@ pub struct FailsafeSettings {
     pub fence_options: FenceOptions,
     /// Farthest from home, m; 0: anywhere (GF_MAX_HOR_DIST).
     pub fence_radius_m: f64,
-    /// Highest above home, m; 0: any height (GF_MAX_VER_DIST).
+    /// Highest, m; 0: any height (GF_MAX_VER_DIST).
     pub fence_height_m: f64,
-    /// Lowest above home, m (ArduPilot: FENCE_ALT_MIN).
+    /// What that is above (ArduPilot: FENCE_ALT_MAX_TP).
+    #[serde(default)]
+    pub fence_height_from: FenceDatum,
+    /// Lowest, m (ArduPilot: FENCE_ALT_MIN).
     #[serde(default)]
     pub fence_floor_m: f64,
+    /// What that is above (ArduPilot: FENCE_ALT_MIN_TP).
+    #[serde(default)]
+    pub fence_floor_from: FenceDatum,
     /// How far inside of its borders sticks stop, m (ArduPilot: FENCE_MARGIN).
     #[serde(default)]
     pub fence_margin_m: f64,
@@ -135,6 +141,20 @@ pub enum FenceStart {
     TakeoffExceptFloor,
     /// When it is armed.
     Armed,
+}
+
+/// What a height of the fence is above.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum FenceDatum {
+    /// Home.
+    #[default]
+    Home,
+    /// Mean sea level.
+    SeaLevel,
+    /// The origin of the local frame.
+    Origin,
+    /// The ground below the vehicle.
+    Ground,
 }
 
 impl Default for FenceParts {
@@ -264,7 +284,9 @@ impl Default for FailsafeSettings {
             fence_options: FenceOptions::default(),
             fence_radius_m: 0.0,
             fence_height_m: 0.0,
+            fence_height_from: FenceDatum::Home,
             fence_floor_m: -10.0,
+            fence_floor_from: FenceDatum::Home,
             fence_margin_m: 0.0,
             fence_starts: FenceStart::Never,
             wind_m_s: -1.0,

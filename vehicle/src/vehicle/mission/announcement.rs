@@ -12,6 +12,13 @@ pub(super) fn begin(step: &Navigate, index: usize, situation: &Situation, propos
     }
 }
 
+/// Turns begin, at the edge of their circle.
+pub(super) fn circling(situation: &Situation, proposal: &mut Proposal) {
+    if situation.identity.is_ardupilot() {
+        proposal.say(Severity::Info, "Mission: circling");
+    }
+}
+
 /// A step is done.
 pub(super) fn end(step: &Navigate, index: usize, situation: &Situation, proposal: &mut Proposal) {
     let told = matches!(step, Navigate::Waypoint(_) | Navigate::Spline { .. } | Navigate::LoiterTime { .. });

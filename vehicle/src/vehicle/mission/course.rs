@@ -15,6 +15,7 @@ use super::super::spline::Onward;
 use super::super::steering::{Steering, SteeringKind};
 use super::super::takeoff::is_slow_near;
 use super::super::tick::TICK_S;
+use super::announcement;
 use super::leg::{Guide, Leg, LegProgress, Turn, is_settling};
 use super::route::Route;
 use super::takeoff_height::{climb_z_m, takeoff_z_m};
@@ -373,7 +374,10 @@ impl Course {
             Then::Wait(0.0) => return TaskProgress::Done(None),
             Then::Wait(time_s) => (Task::Wait(Some(situation.after_us(time_s))), TaskProgress::Going),
             Then::Stay => (Task::Wait(None), TaskProgress::Staying),
-            Then::Circle(circle) => (Task::Circle(circle), TaskProgress::Going),
+            Then::Circle(circle) => {
+                announcement::circling(situation, proposal);
+                (Task::Circle(circle), TaskProgress::Going)
+            }
             Then::Land(above) => (Task::Descend(Some(above)), TaskProgress::Going),
             Then::Rise(z_m) => (self.begin_rise(z_m, situation, proposal), TaskProgress::Going),
             Then::Lower(descent_m) => {

@@ -15,6 +15,7 @@ use super::announcement;
 use super::course::Course;
 use super::jumps::Jumps;
 use super::leg::Turn;
+use super::leg_end::leg_end_m;
 use super::route::Route;
 use super::task::{Helm, TaskProgress};
 use crate::mode::Mode;
@@ -114,6 +115,13 @@ impl Mission {
     /// Beginning and end of the way that is flown, NED, m, if one is.
     pub fn way_m(&self) -> Option<[Vector3<f64>; 2]> {
         self.course.way_m()
+    }
+
+    /// Where the present step leads that waits to begin, NED, m, from a place; `home_z_m` is z of home.
+    pub fn coming_m(&self, from_m: &Vector3<f64>, home_z_m: f64) -> Option<Vector3<f64>> {
+        let step =
+            self.program.navigate(self.current).filter(|_| self.is_started() && !self.course.is_busy())?;
+        leg_end_m(&step, from_m, home_z_m)
     }
 
     /// The line that is followed, two places on it, NED, m.

@@ -4,7 +4,7 @@ use super::super::arming_obstacle::{ArmingObstacle, ArmingSubject as Subject};
 use super::super::situation::Situation;
 use super::Vehicle;
 use crate::kept::KeptValues;
-use crate::plan::{PlanKind, command};
+use crate::plan::{PlanKind, command, is_above_ground};
 use crate::radio::{RadioFailure, RadioLossAction};
 
 /// Bits of ARMING_MIS_ITEMS with the commands that meet them, by name.
@@ -25,8 +25,26 @@ impl Vehicle {
         let items = self.missing_items().map(|text| ArmingObstacle::new(Subject::Mission, text));
         let radio = radio(&situation).map(|text| ArmingObstacle::from(text.to_owned()));
         let values = bad_values(&situation.conduct.kept).map(ArmingObstacle::from);
+        let terrain = self.terrain_obstacle().map(|text| ArmingObstacle::new(Subject::Mission, text));
         let boot = self.machines.boot_fault.obstacle().map(|text| ArmingObstacle::from(text.to_owned()));
-        boot.into_iter().chain(battery).chain(fence).chain(items).chain(radio).chain(values).collect()
+        boot.into_iter()
+            .chain(battery)
+            .chain(fence)
+            .chain(items)
+            .chain(terrain)
+            .chain(radio)
+            .chain(values)
+            .collect()
+    }
+
+    /// A mission above the ground, which ArduPilot knows from its terrain data or from a rangefinder, where neither is to be used.
+    fn terrain_obstacle(&self) -> Option<&'static str> {
+        let is_on = |id: &str| self.conduct().kept.by_id(id).is_some_and(|value| value != 0.0);
+        let rangefinder = is_on("WP_RFND_USE") && is_on("WPNAV_RFND_USE") && self.has_rangefinder();
+        let known = is_on("TERRAIN_ENABLE") || rangefinder;
+        let items = self.plans().get(PlanKind::Mission).items();
+        let wanted = items.iter().skip(1).any(|item| is_above_ground(item.frame));
+        (wanted && !known).then_some("Mission above the terrain, and terrain disabled")
     }
 
     /// Items that ARMING_MIS_ITEMS asks for, and that there are not.
@@ -67,7 +85,7 @@ fn fence(situation: &Situation) -> Option<String> {
     if parts.distance && settings.fence_radius_m < 0.0 {
         return Some("Invalid Circle FENCE_RADIUS value".to_owned());
     }
-    if parts.height && parts.floor && settings.fence_height_m < settings.fence_floor_m {
+    if parts.height && parts.floor && situation.fence_height_m() < situation.fence_floor_m() {
         return Some("FENCE_ALT_MAX < FENCE_ALT_MIN".to_owned());
     }
     let breach = situation.breach_at(&situation.outputs.position_m)?;

@@ -169,7 +169,7 @@ impl Vehicle {
                 self.disarm_by("Emergency stop: rotors stopped")
             }
             (Function::Arming | Function::ArmingOrStop, Position::High) => self.arm(false),
-            (Function::Arming | Function::ArmingOrStop, Position::Middle) => Ok(()),
+            (Function::Arming | Function::ArmingOrStop | Function::Overrides, Position::Middle) => Ok(()),
             (Function::Arming, Position::Low) | (Function::Disarming, Position::High) => {
                 self.disarm_by("Disarmed by switch")
             }
@@ -179,7 +179,10 @@ impl Vehicle {
                 self.machines.simple.choose(reference);
                 Ok(())
             }
-            (Function::Rangefinder | Function::Proximity | Function::Traffic, position) => {
+            (
+                Function::Rangefinder | Function::Proximity | Function::Traffic | Function::Overrides,
+                position,
+            ) => {
                 self.switch_instrument(function, position == Position::High);
                 Ok(())
             }
@@ -262,6 +265,7 @@ impl Vehicle {
         match function {
             Function::Rangefinder => self.machines.obstacles.switch_rangefinder(on),
             Function::Proximity => self.machines.obstacles.switch_proximity(on),
+            Function::Overrides => self.machines.receiver.switch_overrides(on),
             _ => {
                 let mut conduct = *self.conduct();
                 conduct.surroundings.traffic.enabled = on;

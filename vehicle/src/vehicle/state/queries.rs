@@ -321,9 +321,12 @@ impl Vehicle {
 
     /// Where it is led to, NED, m: the end of a mission's leg or of a planned way, or the place that it was asked for.
     pub fn destination_m(&self) -> Option<Vector3<f64>> {
-        let leg = self.leg_errors().filter(|_| self.mode() == Mode::Mission);
+        let in_mission = self.mode() == Mode::Mission;
+        let leg = self.leg_errors().filter(|_| in_mission);
         let steering = self.decided.steering();
+        let mission = Some(&self.machines.mission).filter(|_| in_mission && self.is_armed());
         leg.map(|(end_m, _)| end_m)
+            .or_else(|| mission?.coming_m(&self.outputs().position_m, self.home().position_m.z))
             .or_else(|| self.machines.ground_flight.goal_m(steering))
             .or_else(|| steering.destination_m())
     }

@@ -73,6 +73,9 @@ impl Vehicle {
         if conduct.simulated.errors.need_readings() && self.navigation().is_none() {
             return Err(ChangeError::IdealSensors);
         }
+        if conduct.simulated.errors.switches.gps_comes_by_message() && self.navigation().is_none() {
+            return Err(ChangeError::IdealReceiver);
+        }
         let charge_v = conduct.simulated.battery_v.filter(|volts| before.battery_v != Some(*volts));
         if charge_v.is_some() && kept.airframe.battery.sag {
             return Err(ChangeError::BatteryOfPlant);
@@ -202,6 +205,11 @@ impl Vehicle {
         let flying = situation.steering.kind() != SteeringKind::Idle;
         if mode != Mode::Land {
             situation.refuse_without_rotor()?;
+        }
+        // What only the lost pilot could fly would fall.
+        if identity.is_ardupilot() && situation.armed && situation.pilot.lost && mode.is_flown_by_thrust() {
+            let name = identity.mode_name(mode);
+            return Err(Refusal::Failed(format!("{name} mode rejected: in RC failsafe")));
         }
         if mode.leader() == Leader::Sticks && !matches!(mode, Mode::Position | Mode::ZigZag) {
             self.refuse_leaning(mode)?;

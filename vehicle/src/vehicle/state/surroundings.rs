@@ -7,6 +7,7 @@ use super::super::precision_landing::{PrecisionLanding, Sighting};
 use super::super::remote_id::RemoteId;
 use super::super::traffic_watch::{Encounter, TrafficWatch};
 use super::Vehicle;
+use crate::estimation::gps::GpsFix;
 use crate::surroundings::{Aircraft, RangeScan, Reading};
 
 impl Vehicle {
@@ -63,6 +64,15 @@ impl Vehicle {
         let range_m = self.machines.obstacles.below_m();
         let (situation, parts) = self.situation_and_machines();
         parts.precision.take(&situation, range_m, sighting);
+    }
+
+    /// Takes a GPS fix from outside, if the receiver is of that kind. Returns whether it is.
+    pub fn receive_fix(&mut self, fix: GpsFix) -> bool {
+        let taken = self.conduct().simulated.errors.switches.gps_comes_by_message();
+        if taken {
+            self.perception.receive_fix(fix);
+        }
+        taken
     }
 
     /// Who flies around.
