@@ -261,8 +261,9 @@ proptest! {
         let (past_m, worst) = observe(&mut changed);
         prop_assert_eq!(worst, None);
         for axis in 0..3 {
-            // The plan's axes may be turned by one sample's motion relative to these.
-            prop_assert!(past_m[axis] <= 1.01 * free_m[axis] + 0.02, "{past_m} {free_m}");
+            // The plan's axes may be turned by one sample's motion relative to these, and share the limits otherwise than without lower ones:
+            // a flight to (−18.8, 12.2) m that is sent to (−6.4, 13.5) m after 3.35 s, at 0.14 of the speed limit, goes 2.4 % farther across.
+            prop_assert!(past_m[axis] <= 1.03 * free_m[axis] + 0.02, "{past_m} {free_m}");
         }
         let end = changed.outputs().setpoint;
         prop_assert!((end.position_m - after.reference.position_m).norm() < 1e-3, "{end:?}");
