@@ -112,9 +112,11 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("PILOT_Y_RATE_TC", 0.0, 0.0..=1.0, "s", "Time constant of the yaw stick"),
     ], whole [
         ("LOIT_OPTIONS", 0, 0..=1, "", "Options of loitering"),
-        ("WPNAV_RFND_USE", 1, 0..=1, "", "Use of a range finder in missions; with 0 and TERRAIN_ENABLE = 0, no mission above the ground is armed for"),
-        ("WP_RFND_USE", 1, 0..=1, "", "Use of a range finder in missions; with 0 and TERRAIN_ENABLE = 0, no mission above the ground is armed for"),
-        ("TERRAIN_ENABLE", 1, 0..=1, "", "Use of terrain data; here the ground is known, see WP_RFND_USE"),
+    ]),
+    kept!(ArduPilot, "the ground is always known in flight (--world)", real [], whole [
+        ("WPNAV_RFND_USE", 1, 0..=1, "", "Use of a rangefinder in missions; if this and TERRAIN_ENABLE are 0, a mission above the terrain keeps the vehicle from arming"),
+        ("WP_RFND_USE", 1, 0..=1, "", "Use of a rangefinder in missions; if this and TERRAIN_ENABLE are 0, a mission above the terrain keeps the vehicle from arming"),
+        ("TERRAIN_ENABLE", 1, 0..=1, "", "Use of terrain data; if this and WP_RFND_USE are 0, a mission above the terrain keeps the vehicle from arming"),
         ("TERRAIN_FOLLOW", 0, 0..=1, "", "Follow the terrain; here places above the terrain and RTL_ALT_TYPE ask for that"),
         ("SIM_TERRAIN", 1, 0..=1, "", "Ground follows terrain data; here that of --world"),
     ]),
