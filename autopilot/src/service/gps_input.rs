@@ -77,11 +77,11 @@ fn fix(context: &Context, payload: &Payload<'_>) -> Option<GpsFix> {
             altitude_m
         },
     };
-    let known = |left_out: bool, value: f64| if left_out { 0.0 } else { value };
+    let unless = |left_out: bool, value: f64, otherwise: f64| if left_out { otherwise } else { value };
     let velocity_m_s = Vector3::new(
-        known(without(NO_HORIZONTAL_VELOCITY), north),
-        known(without(NO_HORIZONTAL_VELOCITY), east),
-        known(without(NO_VERTICAL_VELOCITY), down),
+        unless(without(NO_HORIZONTAL_VELOCITY), north, 0.0),
+        unless(without(NO_HORIZONTAL_VELOCITY), east, 0.0),
+        unless(without(NO_VERTICAL_VELOCITY), down, 0.0),
     );
     let is_fix = payload.u8(61) >= THREE_DIMENSIONAL && place.is_valid();
     if !is_fix || !velocity_m_s.iter().all(|axis| axis.is_finite()) {
@@ -91,7 +91,6 @@ fn fix(context: &Context, payload: &Payload<'_>) -> Option<GpsFix> {
     let accuracy = |left_out: bool, value: f64, usual: f64| {
         if left_out || !value.is_finite() || value <= 0.0 { usual } else { value }
     };
-    let unknown = |left_out: bool, accuracy: f64, unknown: f64| if left_out { unknown } else { accuracy };
     let speed_m_s = accuracy(without(NO_SPEED_ACCURACY), speed_accuracy, VELOCITY_M_S);
     let height_m = accuracy(without(NO_VERTICAL_ACCURACY), vertical_accuracy, VERTICAL_M);
     Some(GpsFix {
@@ -99,9 +98,9 @@ fn fix(context: &Context, payload: &Payload<'_>) -> Option<GpsFix> {
         position_m: context.vehicle.frame().to_local_m(&place),
         velocity_m_s,
         horizontal_accuracy_m: accuracy(without(NO_HORIZONTAL_ACCURACY), horizontal_accuracy, HORIZONTAL_M),
-        vertical_accuracy_m: unknown(without(NO_ALTITUDE), height_m, UNKNOWN_M),
-        velocity_accuracy_m_s: unknown(without(NO_HORIZONTAL_VELOCITY), speed_m_s, UNKNOWN_M_S),
-        climb_accuracy_m_s: unknown(without(NO_VERTICAL_VELOCITY), speed_m_s, UNKNOWN_M_S),
+        vertical_accuracy_m: unless(without(NO_ALTITUDE), height_m, UNKNOWN_M),
+        velocity_accuracy_m_s: unless(without(NO_HORIZONTAL_VELOCITY), speed_m_s, UNKNOWN_M_S),
+        climb_accuracy_m_s: unless(without(NO_VERTICAL_VELOCITY), speed_m_s, UNKNOWN_M_S),
         satellites: payload.u8(62),
     })
 }

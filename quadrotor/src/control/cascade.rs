@@ -313,11 +313,13 @@ impl Cascade {
         }
         let wanted_m_s2 = required.acceleration_m_s2 + self.feedback_m_s2;
         // Commands that are cut off turn with the reference.
-        let within = RequiredThrust { acceleration_m_s2: wanted_m_s2, ..*required }.leaning_at_most(|| {
+        let largest_m_s2 = || {
             let required_m_s2 = required.acceleration_m_s2.xy().norm();
-            // How the limit moves with the feedback is not known.
-            [self.largest_lean(configuration, wanted_m_s2.z).beside(required_m_s2), 0.0, 0.0]
-        });
+            self.largest_lean(configuration, wanted_m_s2.z).beside(required_m_s2)
+        };
+        // How the limit moves with the feedback is not known.
+        let within = RequiredThrust { acceleration_m_s2: wanted_m_s2, ..*required }
+            .leaning_at_most(largest_m_s2, |_| [0.0, 0.0]);
         FlatAttitude::new(&within.acceleration_m_s2, &within.jerk_m_s3, &within.snap_m_s4, heading)
     }
 

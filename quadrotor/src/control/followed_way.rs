@@ -63,7 +63,9 @@ impl FollowedWay {
         (reference, body): (&PositionReference, &RigidBody),
         time_us: u64,
     ) -> Option<PositionReference> {
-        let is_beyond = RequiredThrust::is_beyond(configuration, reference);
+        let whole = RequiredThrust::whole(configuration, reference);
+        let is_beyond_thrust = whole.is_beyond_thrust(configuration);
+        let is_beyond = is_beyond_thrust || whole.is_beyond_lean(configuration);
         let mut offset = match self.offset {
             None if is_beyond => Offset::none(time_us),
             None => return None,
@@ -71,7 +73,7 @@ impl FollowedWay {
         };
         if is_beyond {
             offset.beyond_us = time_us;
-            offset.gives_height |= RequiredThrust::is_beyond_thrust(configuration, reference);
+            offset.gives_height |= is_beyond_thrust;
         }
         let is_released = time_us.saturating_sub(offset.beyond_us) > RELEASED_US;
         if is_released || reference.is_at_rest() || !offset.is_finite() {

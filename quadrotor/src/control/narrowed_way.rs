@@ -198,6 +198,7 @@ impl Narrowing {
 #[cfg(test)]
 mod tests {
     use alloc::vec::Vec;
+    use core::f64::consts::FRAC_PI_2;
 
     use nalgebra::Vector3;
 
@@ -285,15 +286,13 @@ mod tests {
     fn the_vertical_motion_is_narrowed_by_itself() {
         let configuration = Configuration::default();
         let line = |time_us: u64| {
-            let (up, north) = (circle(4.0, time_us), known_motion::circle(4.0, 1.0, 1e-6 * time_us as f64));
-            let along = |up: Vector3<f64>, north: Vector3<f64>| Vector3::new(north.x, 0.0, up.x / 4.0);
-            PositionReference {
-                velocity_m_s: along(up.velocity_m_s, north.velocity_m_s),
-                acceleration_m_s2: along(up.acceleration_m_s2, north.acceleration_m_s2),
-                jerk_m_s3: along(up.jerk_m_s3, north.jerk_m_s3),
-                snap_m_s4: along(up.snap_m_s4, north.snap_m_s4),
-                ..PositionReference::goal(along(up.position_m, north.position_m).into(), 0.0)
-            }
+            known_motion::motion(|order| {
+                let along = |size_m: f64, rate_rad_s: f64| {
+                    let angle = rate_rad_s * 1e-6 * time_us as f64 + f64::from(order) * FRAC_PI_2;
+                    size_m * rate_rad_s.powi(order) * libm::cos(angle)
+                };
+                Vector3::new(along(4.0, 1.0), 0.0, along(1.0, 4.0))
+            })
         };
         let mut way = NarrowedWay::default();
         let (mut down_m_s2, mut up_m_s2, mut aside_m) = (0.0_f64, 0.0_f64, 0.0_f64);

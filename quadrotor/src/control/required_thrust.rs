@@ -29,23 +29,17 @@ impl RequiredThrust {
         Self::whole(configuration, reference).within(configuration, lean_rad)
     }
 
-    /// Whether a reference asks for more thrust, or less, than there is, or leans farther than can be followed.
-    pub(crate) fn is_beyond(configuration: &Configuration, reference: &PositionReference) -> bool {
-        if Self::is_beyond_thrust(configuration, reference) {
-            return true;
-        }
-        let whole = Self::whole(configuration, reference);
-        let horizontal_m_s2 = whole.acceleration_m_s2.xy().norm();
-        let lean_rad = reference_tilt_rad(configuration);
-        horizontal_m_s2 > NOTHING_M_S2
-            && horizontal_m_s2 > whole.most_horizontal_m_s2(configuration, lean_rad)
+    /// Whether it is more thrust, or less, than there is.
+    pub(crate) fn is_beyond_thrust(&self, configuration: &Configuration) -> bool {
+        let (up, down) = level_range(configuration);
+        !(up..=down).contains(&self.acceleration_m_s2.z)
     }
 
-    /// Whether a reference asks for more thrust, or less, than there is.
-    pub(crate) fn is_beyond_thrust(configuration: &Configuration, reference: &PositionReference) -> bool {
-        let vertical_m_s2 = Self::whole(configuration, reference).acceleration_m_s2.z;
-        let (up, down) = level_range(configuration);
-        !(up..=down).contains(&vertical_m_s2)
+    /// Whether it leans farther than can be followed.
+    pub(crate) fn is_beyond_lean(&self, configuration: &Configuration) -> bool {
+        let horizontal_m_s2 = self.acceleration_m_s2.xy().norm();
+        let lean_rad = reference_tilt_rad(configuration);
+        horizontal_m_s2 > NOTHING_M_S2 && horizontal_m_s2 > self.most_horizontal_m_s2(configuration, lean_rad)
     }
 
     /// a + D v and its derivatives.
@@ -62,7 +56,10 @@ impl RequiredThrust {
     /// Within the thrust and a largest lean, rad.
     pub(crate) fn within(&self, configuration: &Configuration, lean_rad: f64) -> Self {
         let within = self.within_thrust(configuration);
-        within.leaning_at_most(|| within.most_horizontal(configuration, lean_rad))
+        within.leaning_at_most(
+            || within.most_horizontal_m_s2(configuration, lean_rad),
+            |most_m_s2| within.motion_of_most(most_m_s2, lean_rad),
+        )
     }
 
     /// Within the vertical accelerations that the thrust gives a level vehicle.
@@ -82,44 +79,52 @@ impl RequiredThrust {
 
     /// The largest horizontal acceleration beside the vertical one, under a lean in rad, m/s².
     pub(crate) fn most_horizontal_m_s2(&self, configuration: &Configuration, lean_rad: f64) -> f64 {
-        self.most_horizontal(configuration, lean_rad)[0]
+        let vertical_m_s2 = self.acceleration_m_s2.z;
+        most_horizontal(vertical_m_s2, lean_rad).min(holding_horizontal_m_s2(configuration, -vertical_m_s2))
     }
 
-    /// The same with its two derivatives:
+    /// The two derivatives of the largest horizontal acceleration m under a lean, rad:
     ///
     /// ```text
     /// w = g − a_z
     /// m = w tan(lean),  m′ = w′ tan(lean),  m″ = w″ tan(lean)         as far as the lean allows,
     /// m² = s² − w²,  m m′ = −w w′,  m m″ = −w w″ − w′² − m′²         as far as the thrust s does
     /// ```
-    fn most_horizontal(&self, configuration: &Configuration, lean_rad: f64) -> [f64; 3] {
-        let up = [GRAVITY_M_S2 - self.acceleration_m_s2.z, -self.jerk_m_s3.z, -self.snap_m_s4.z];
-        let leant = most_horizontal(self.acceleration_m_s2.z, lean_rad);
-        let held = holding_horizontal_m_s2(configuration, -self.acceleration_m_s2.z);
-        if leant <= held { self.leaning_as_now(leant) } else { held_beside(held, up) }
+    ///
+    /// The least that is commanded however weak the rotors are does not change.
+    fn motion_of_most(&self, m: f64, lean_rad: f64) -> [f64; 2] {
+        let [w, w_rate, w_bend] =
+            [GRAVITY_M_S2 - self.acceleration_m_s2.z, -self.jerk_m_s3.z, -self.snap_m_s4.z];
+        if m == most_horizontal(self.acceleration_m_s2.z, lean_rad) {
+            let tangent = if w > NOTHING_M_S2 { m / w } else { 0.0 };
+            return [tangent * w_rate, tangent * w_bend];
+        }
+        if m <= LEAST_HORIZONTAL_M_S2 {
+            return [0.0, 0.0];
+        }
+        let rate = -w * w_rate / m;
+        [rate, -(w * w_bend + w_rate * w_rate + rate * rate) / m]
     }
 
-    /// A horizontal acceleration of `most_m_s2` that leans as far as it does now, with its two derivatives.
-    fn leaning_as_now(&self, most_m_s2: f64) -> [f64; 3] {
-        let up_m_s2 = GRAVITY_M_S2 - self.acceleration_m_s2.z;
-        let tangent = if up_m_s2 > NOTHING_M_S2 { most_m_s2 / up_m_s2 } else { 0.0 };
-        [most_m_s2, -tangent * self.jerk_m_s3.z, -tangent * self.snap_m_s4.z]
-    }
-
-    /// The same with a horizontal acceleration of at most m, which is only asked for, with its derivatives, if there is one:
+    /// The same with a horizontal acceleration of at most m, which is only asked for if there is one, as its two derivatives are if it is
+    /// cut off:
     ///
     /// ```text
     /// a = r n,  r′ = n·j,  n′ = (j − r′ n)/r,  r″ = n·s + r |n′|²,  n″ = (s − 2 r′ n′ − r″ n)/r
     /// (m n)′ = m′ n + m n′,  (m n)″ = m″ n + 2 m′ n′ + m n″
     /// ```
-    pub(crate) fn leaning_at_most(&self, most: impl FnOnce() -> [f64; 3]) -> Self {
+    pub(crate) fn leaning_at_most(
+        &self,
+        most_m_s2: impl FnOnce() -> f64,
+        motion: impl FnOnce(f64) -> [f64; 2],
+    ) -> Self {
         let [a, j, s] = [self.acceleration_m_s2, self.jerk_m_s3, self.snap_m_s4].map(|part| part.xy());
         // Mostly nothing is cut off, which squares tell.
         let squared = a.norm_squared();
         if squared <= NOTHING_M_S2 * NOTHING_M_S2 {
             return *self;
         }
-        let [m, m_rate, m_bend] = most();
+        let m = most_m_s2();
         if squared <= m * m {
             return *self;
         }
@@ -128,6 +133,7 @@ impl RequiredThrust {
         if !r.is_finite() || r <= m {
             return *self;
         }
+        let [m_rate, m_bend] = motion(m);
         let n = a / r;
         let grows = n.dot(&j);
         let turns = (j - n * grows) / r;
@@ -149,16 +155,6 @@ impl RequiredThrust {
 pub(crate) fn level_range(configuration: &Configuration) -> (f64, f64) {
     let (up, down) = vertical_range(configuration, 1.0);
     (up.min(0.0), down.max(0.0))
-}
-
-/// The largest horizontal acceleration m beside an acceleration w up, both m/s², with its two derivatives. The least that is commanded
-/// however weak the rotors are does not change.
-fn held_beside(m: f64, [w, w_rate, w_bend]: [f64; 3]) -> [f64; 3] {
-    if m <= LEAST_HORIZONTAL_M_S2 {
-        return [m, 0.0, 0.0];
-    }
-    let rate = -w * w_rate / m;
-    [m, rate, -(w * w_bend + w_rate * w_rate + rate * rate) / m]
 }
 
 #[cfg(test)]
@@ -217,7 +213,7 @@ pub(crate) mod tests {
                     |part: fn(&RequiredThrust) -> Vector3<f64>| (part(&after) - part(&before)) / (2.0 * H);
                 let jerk = slope(|required| required.acceleration_m_s2) - now.jerk_m_s3;
                 let snap = slope(|required| required.jerk_m_s3) - now.snap_m_s4;
-                assert!(jerk.norm() < 1e-5 && snap.norm() < 1e-4, "{climb} {time_s}: {jerk} {snap}");
+                assert!(jerk.norm() < 1e-5 && snap.norm() < 1e-5, "{climb} {time_s}: {jerk} {snap}");
             }
         }
         assert!(within > 3 && leant > 3 && cut > 1 && held > 3, "{within} {leant} {cut} {held}");
@@ -241,7 +237,7 @@ pub(crate) mod tests {
             assert!((up_m_s2 - expected).abs() < 1e-9, "{up_m_s2}");
             assert!(required.acceleration_m_s2.xy().norm() <= libm::tan(0.5) * up_m_s2 + 1e-9);
             assert_eq!((required.jerk_m_s3.z, required.snap_m_s4.z), (0.0, 0.0));
-            assert!(RequiredThrust::is_beyond(&configuration, &reference));
+            assert!(RequiredThrust::whole(&configuration, &reference).is_beyond_thrust(&configuration));
         }
     }
 

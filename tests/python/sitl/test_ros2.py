@@ -45,14 +45,25 @@ class Mavros:
         self.mav.set_mode_send(1, armed | mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, number)
         self.wait("HEARTBEAT", lambda beat: beat.custom_mode == number, each)
 
+    def ask_for_the_version(self):
+        """At large at first, and of the autopilot then; the answers."""
+        for target in ((0, 0), (1, 1)):
+            self.mav.command_long_send(*target, mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES, 0, 1, 0, 0, 0, 0, 0, 0)
+            yield self.wait("AUTOPILOT_VERSION")
 
-@pytest.fixture
-def mavros(start):
+
+def listening(start, *options: str):
+    """MAVROS, to which a vehicle with these options sends."""
     port = free_port()
-    start("--speed", "2", links=(f"udpout:127.0.0.1:{port},onboard",))
+    start(*options, "--speed", "2", links=(f"udpout:127.0.0.1:{port},onboard",))
     node = Mavros(port)
     yield node
     node.connection.close()
+
+
+@pytest.fixture
+def mavros(start):
+    yield from listening(start)
 
 
 def test_what_mavros_reads_and_asks_for_at_the_start(mavros):
@@ -61,10 +72,8 @@ def test_what_mavros_reads_and_asks_for_at_the_start(mavros):
     missing = set(READ)
     mavros.wait(None, lambda message: missing.discard(message.get_type()) or not missing)
 
-    # First to everybody, later to the autopilot alone.
-    for target in ((0, 0), (1, 1)):
-        mavros.mav.command_long_send(*target, mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES, 0, 1, 0, 0, 0, 0, 0, 0)
-        capabilities = mavros.wait("AUTOPILOT_VERSION").capabilities
+    for version in mavros.ask_for_the_version():
+        capabilities = version.capabilities
         assert capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT and capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
     mavros.mav.command_long_send(1, 1, mavlink.MAV_CMD_GET_HOME_POSITION, 0, *[0] * 7)
     assert mavros.wait("HOME_POSITION").altitude == 488_000

@@ -9,9 +9,8 @@ from pymavlink import mavftp
 from pymavlink.dialects.v10 import ardupilotmega as first_version
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavsdk_vehicle import free_port
 from test_files import file_client, protocol_crc
-from test_ros2 import Mavros
+from test_ros2 import listening
 from test_services import all_parameters
 
 PROTOCOL_VERSION, COMPONENT_METADATA, AVAILABLE_MODES = 300, 397, 435
@@ -36,16 +35,17 @@ READ = {
 }  # fmt: skip
 
 
+def download(ftp, path):
+    """The bytes of a file."""
+    held = []
+    ftp.cmd_get([path], callback=lambda file: held.append(file.read()))
+    ftp.process_ftp_reply("OpenFileRO", timeout=20)
+    return held[0]
+
+
 def packed_parameters(client):
     """The packed file with defaults, read in bursts and decoded by pymavlink."""
-    ftp, held = file_client(client), []
-
-    def keep(file):
-        held.append(file.read())
-
-    ftp.cmd_get(["@PARAM/param.pck?withdefaults=1"], callback=keep)
-    ftp.process_ftp_reply("OpenFileRO", timeout=20)
-    decoded = mavftp.MAVFTP.ftp_param_decode(held[0])
+    decoded = mavftp.MAVFTP.ftp_param_decode(download(file_client(client), "@PARAM/param.pck?withdefaults=1"))
     named = lambda rows: {name.decode(): value for name, value, _ in rows}  # noqa: E731
     return named(decoded.params), named(decoded.defaults)
 
@@ -124,16 +124,10 @@ def test_qgroundcontrol(start, connect):
     checksum, uri = struct.unpack("<I", payload[4:8])[0], payload[8:].split(b"\0")[0].decode()
     ftp, files = file_client(client), {}
 
-    def download(uri):
-        held = []
-        ftp.cmd_get([uri.removeprefix("mftp://")], callback=lambda file: held.append(file.read()))
-        ftp.process_ftp_reply("OpenFileRO", timeout=20)
-        return held[0]
-
-    general = download(uri)
+    general = download(ftp, uri.removeprefix("mftp://"))
     assert protocol_crc(general) == checksum
     for entry in json.loads(general)["metadataTypes"]:
-        content = download(entry["uri"])
+        content = download(ftp, entry["uri"].removeprefix("mftp://"))
         assert protocol_crc(content) == entry["fileCrc"]
         files[entry["type"]] = json.loads(content)
     described = {parameter["name"] for parameter in files[1]["parameters"]}
@@ -166,20 +160,14 @@ def test_qgroundcontrol(start, connect):
 @pytest.fixture
 def mavros(start):
     """MAVROS with apm.launch: component 191 of the vehicle's own system, which listens."""
-    port = free_port()
-    start("--autopilot", "ardupilot", "--speed", "2", links=(f"udpout:127.0.0.1:{port},onboard",))
-    node = Mavros(port)
-    yield node
-    node.connection.close()
+    yield from listening(start, "--autopilot", "ardupilot")
 
 
 def test_mavros_for_ardupilot(mavros):
     first = mavros.wait("HEARTBEAT")
     assert (first.autopilot, first.type) == (mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, mavlink.MAV_TYPE_QUADROTOR)
-    # The version is asked for at large at first, and of the autopilot then.
-    for target in ((0, 0), (1, 1)):
-        mavros.mav.command_long_send(*target, mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES, 0, 1, 0, 0, 0, 0, 0, 0)
-        assert mavros.wait("AUTOPILOT_VERSION").capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT
+    for version in mavros.ask_for_the_version():
+        assert version.capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT
     # The node's own service asks for rates, one message after the other.
     for number in (mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED, mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_RAW_IMU):
         mavros.mav.command_long_send(1, 1, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, 0, number, 50_000, 0, 0, 0, 0, 0)

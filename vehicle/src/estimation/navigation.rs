@@ -193,9 +193,10 @@ impl Navigation {
                 gps::RATE_HZ
             }
         };
-        let received = self.received.take();
-        let fix = self.gps.sample(motion).and_then(|fix| match errors {
-            Some(errors) if errors.switches.gps_comes_by_message() => None,
+        let by_message = errors.is_some_and(|errors| errors.switches.gps_comes_by_message());
+        let received = self.received.take().filter(|_| by_message);
+        let simulated = self.gps.sample(motion).filter(|_| !by_message);
+        let simulated = simulated.and_then(|fix| match errors {
             Some(errors) => self.errors.fix(errors, fix, frame.origin().latitude_deg),
             None => Some(fix),
         });
@@ -203,9 +204,7 @@ impl Navigation {
             (Some(fix), Some(before)) => fix.time_us.saturating_sub(before.time_us).min(FIX_PATIENCE_US),
             _ => 1_000_000 / u64::from(rate_hz),
         };
-        let by_message = errors.is_some_and(|errors| errors.switches.gps_comes_by_message());
-        let fix = received.filter(|_| by_message).or(fix);
-        if let Some(fix) = fix.and_then(|fix| self.defects.gps.tell(fix, fault)) {
+        if let Some(fix) = received.or(simulated).and_then(|fix| self.defects.gps.tell(fix, fault)) {
             let starts_again = errors.is_none_or(|errors| errors.switches.starts_again);
             let fitted = fix.is_accurate() && self.estimator.gps(&fix, starts_again);
             self.gps_trust.update(fitted, period_us);

@@ -274,9 +274,10 @@ impl<'a> Situation<'a> {
     pub fn fence_height_m(&self) -> f64 {
         let settings = &self.conduct.failsafe;
         let limit_m = settings.fence_height_m;
-        match settings.fence_height_from {
-            datum if limit_m > 0.0 => self.above_home_m(datum, limit_m).max(f64::MIN_POSITIVE),
-            _ => limit_m,
+        if limit_m > 0.0 {
+            self.above_home_m(settings.fence_height_from, limit_m).max(f64::MIN_POSITIVE)
+        } else {
+            limit_m
         }
     }
 

@@ -35,9 +35,10 @@ pub fn gps_raw_int(vehicle: &Vehicle) -> MavMessage {
     let course_rad = libm::atan2(ground_m_s.y, ground_m_s.x);
     let millimetres = |accuracy_m: f64| (accuracy_m * 1e3).round() as u32;
     let hundredths = |value: f64| (value * 1e2).round() as u16;
-    let (speed, course) = match fix.tells_velocity() {
-        true => (hundredths(ground_m_s.norm()), (heading_deg(course_rad) * 1e2).floor() as u16),
-        false => (u16::MAX, u16::MAX),
+    let (speed, course) = if fix.tells_velocity() {
+        (hundredths(ground_m_s.norm()), (heading_deg(course_rad) * 1e2).floor() as u16)
+    } else {
+        (u16::MAX, u16::MAX)
     };
     MavMessage::GPS_RAW_INT(GPS_RAW_INT_DATA {
         time_usec: fix.time_us,
