@@ -303,7 +303,7 @@ def return_to_the_nearest(rally=None, from_far=False):
 GPS, MAG, BARO = FailureUnit.SENSOR_GPS, FailureUnit.SENSOR_MAG, FailureUnit.SENSOR_BARO
 OFF, STUCK = FailureType.OFF, FailureType.STUCK
 # A test on a busy machine is late, and the later the faster the vehicle's time: that is no loss of it.
-PATIENT = [option for setting in ("COM_DISARM_PRFLT=-1", "COM_OF_LOSS_T=30", "COM_RC_LOSS_T=30") for option in ("--set", setting)]
+PATIENT = [option for setting in ("COM_DISARM_PRFLT=-1", "COM_RC_LOSS_T=30") for option in ("--set", setting)]
 # With the speed of each: where MAVSDK sends set-points by the wall clock, they come often enough.
 FLIGHTS = {
     "Takeoff and Land": (30, takeoff_and_land),
