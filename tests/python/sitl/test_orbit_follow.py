@@ -53,7 +53,7 @@ def test_mavsdk_orbits_and_follows(fly):  # noqa: F811
     # A target that goes north at 3 m/s from below the vehicle; it tells itself ten times a second.
     follow.set_config(Config(8.0, 9.0, 0.1, Config.FollowAltitudeMode.CONSTANT, 5.0, 180.0))
     follow.start()
-    eventually("follow-me", lambda: telemetry.flight_mode() == FlightMode.FOLLOW_ME)
+    eventually("follow-me", lambda: telemetry.flight_mode() == FlightMode.FOLLOW_ME and follow.is_active())
     began, behind, end = time.monotonic(), [], time.monotonic() + 7.0
     while time.monotonic() < end:
         travelled = 3.0 * 4 * (time.monotonic() - began)

@@ -9,7 +9,7 @@ import sys
 import documents
 import pytest
 
-from mavsdk_vehicle import PATIENT, free_port
+from mavsdk_vehicle import free_port, patiently
 
 FLIGHTS = [block for block in documents.of("python") if re.search(r"^(from|import) (pymavlink|mavsdk)\b", block.text, re.MULTILINE)]
 
@@ -34,7 +34,7 @@ class Stand:
     def __init__(self, start, arguments):
         self.ports = {}
         links = () if "--link" in arguments else (f"udpout:127.0.0.1:{self.port('14550')}", f"udpout:127.0.0.1:{self.port('14540')},onboard")
-        self.vehicle = start(*PATIENT, *(re.sub(r"(?<=:)\d{4,5}\b", self.port, word) for word in arguments), links=links)
+        self.vehicle = start(*patiently(*(re.sub(r"(?<=:)\d{4,5}\b", self.port, word) for word in arguments)), links=links)
 
     def port(self, printed) -> str:
         number = printed if isinstance(printed, str) else printed[0]
@@ -72,7 +72,7 @@ def test_all_blocks_on_one_vehicle(start, group, backwards):
 def test_the_mavsdk_block_flies_a_vehicle_that_another_program_has_left_in_the_air(start, connect):
     block = next(block for block in FLIGHTS if "from mavsdk" in block.text and "print(\"landed\")" in block.text)
     port = free_port()
-    vehicle = start(*PATIENT, "--speed", "4", links=("udpin:0", f"udpout:127.0.0.1:{port},onboard"))
+    vehicle = start(*patiently("--speed", "4"), links=("udpin:0", f"udpout:127.0.0.1:{port},onboard"))
     connect(vehicle).take_off()
     code = block.text.replace("14540", str(port))
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=90)
