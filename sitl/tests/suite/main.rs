@@ -64,6 +64,7 @@ mod signing;
 mod simulation_parameters;
 mod smart_return;
 mod soak;
+mod speed_controllers;
 mod survey;
 mod terrain;
 mod traffic;

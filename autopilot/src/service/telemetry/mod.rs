@@ -7,6 +7,7 @@ mod estimate;
 mod navigation;
 mod position;
 mod sensors;
+mod speed_controllers;
 mod status;
 mod table;
 mod targets;

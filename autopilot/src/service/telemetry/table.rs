@@ -4,7 +4,8 @@ use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::*;
 
 use super::{
-    actuators, attitude, board, estimate, navigation, position, sensors, status, targets, truth, wind,
+    actuators, attitude, board, estimate, navigation, position, sensors, speed_controllers, status, targets,
+    truth, wind,
 };
 use crate::service::Service;
 use crate::stream::{Build, Group, Stream};
@@ -58,7 +59,7 @@ const STREAMS: &[Stream] = &[
         Build::Perhaps(targets::position_target_local_ned),
     )
     .of(Group::Position),
-    Stream::new(POSITION_TARGET_GLOBAL_INT_DATA::ID, [0.0, 0.0], targets::position_target_global_int)
+    Stream::new(POSITION_TARGET_GLOBAL_INT_DATA::ID, [1.0, 10.0], targets::position_target_global_int)
         .of(Group::ExtendedStatus),
     Stream::when(PID_TUNING_DATA::ID, [4.0, 10.0], Build::Several(targets::pid_tuning))
         .of(Group::Extra1)
@@ -70,6 +71,11 @@ const STREAMS: &[Stream] = &[
     Stream::new(HIL_STATE_QUATERNION_DATA::ID, [0.0, 25.0], truth::true_state),
     Stream::new(ACTUATOR_OUTPUT_STATUS_DATA::ID, [0.0, 0.0], actuators::actuator_output_status),
     Stream::new(ACTUATOR_CONTROL_TARGET_DATA::ID, [0.0, 0.0], actuators::actuator_control_target),
+    Stream::new(ESC_INFO_DATA::ID, [1.0, 10.0], speed_controllers::esc_info),
+    Stream::new(ESC_STATUS_DATA::ID, [1.0, 10.0], speed_controllers::esc_status),
+    Stream::new(ESC_TELEMETRY_1_TO_4_DATA::ID, [0.0, 0.0], speed_controllers::esc_telemetry)
+        .of(Group::Extra3)
+        .of_ardupilot(),
     Stream::new(ALTITUDE_DATA::ID, [1.0, 10.0], position::altitude).of(Group::Extra3),
     Stream::new(BATTERY_STATUS_DATA::ID, [0.5, 0.5], status::battery_status).of(Group::Extra3),
     Stream::new(FENCE_STATUS_DATA::ID, [0.5, 1.0], status::fence_status).of(Group::ExtendedStatus),
