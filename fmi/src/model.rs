@@ -63,6 +63,12 @@ pub trait Model: Sized + 'static {
         Cow::Borrowed(parameters)
     }
 
+    /// A number that a variable cannot have and the range that it must be in, as the message says them. A model whose ranges are told
+    /// elsewhere, too, overrides this to tell them alike.
+    fn out_of_range(variable: &Variable<Self>, value: f64, minimum: f64, maximum: f64) -> (String, String) {
+        variable.out_of_range(value, minimum, maximum)
+    }
+
     /// What an instance holds from its instantiation until it is freed, whatever becomes of its runs: a share in what instances have in
     /// common, as the results of long calculations. What nobody holds any more must go: a library can be unloaded then.
     fn share() -> Box<dyn Any> {

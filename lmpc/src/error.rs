@@ -25,6 +25,22 @@ impl Display for Shown {
     }
 }
 
+/// An eigenvalue, from its real and its imaginary part: `1`, `0.9 + 0.2i`.
+struct Mode(f64, f64);
+
+impl Display for Mode {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> FormatResult {
+        let Self(re, im) = *self;
+        Shown(re).fmt(formatter)?;
+        if im == 0.0 {
+            return Ok(());
+        }
+        formatter.write_str(if im < 0.0 { " - " } else { " + " })?;
+        Shown(im.max(-im)).fmt(formatter)?;
+        formatter.write_str("i")
+    }
+}
+
 /// A violated precondition of a design, one variant each, with the numbers that show it.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -104,7 +120,7 @@ pub enum DesignError {
         value: f64,
     },
     /// There must be one Laguerre basis for each input.
-    #[error("{actual} Laguerre bases given for {expected} inputs")]
+    #[error("{actual} Laguerre {} given; expected {expected}, one for each input", if *actual == 1 { "basis" } else { "bases" })]
     BasisCount {
         /// Number of inputs.
         expected: usize,
@@ -142,7 +158,7 @@ pub enum DesignError {
         value: f64,
     },
     /// A mode on or outside the circle of radius λ cannot be moved by the inputs.
-    #[error("the mode at {re} {im:+}i is not controllable, so no gain stabilizes it")]
+    #[error("the mode at {} is not controllable, so no gain stabilizes it", Mode(*re, *im))]
     Uncontrollable {
         /// Real part of the eigenvalue.
         re: f64,
@@ -150,7 +166,7 @@ pub enum DesignError {
         im: f64,
     },
     /// A mode on or outside the circle of radius λ does not show in the cost.
-    #[error("the mode at {re} {im:+}i is not detectable through Q, so the optimum need not stabilize it")]
+    #[error("the mode at {} is not detectable through Q, so the optimum need not stabilize it", Mode(*re, *im))]
     Undetectable {
         /// Real part of the eigenvalue.
         re: f64,

@@ -135,6 +135,7 @@ mod simulation_error;
 mod simulation_state;
 
 pub use configuration::error::ConfigurationError;
+pub use configuration::nearest_name::nearest_name;
 pub use configuration::parameter::{Access, Choice, Mutability, Parameter};
 pub use configuration::parameters::{Configured, PARAMETERS};
 pub use configuration::quantity::{Quantity, ValueRange};

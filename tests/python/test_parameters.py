@@ -99,9 +99,11 @@ def test_simulation_with_a_bad_start_value_names_it(unzipped, model_description,
 @pytest.mark.parametrize(
     "start_values, message",
     [
-        ({"limits.tilt": 45.0}, "limits.tilt = 45.0 rad; allowed 0.05 to 1.2 rad (2.9 to 68.8 deg)"),
+        ({"limits.tilt": 45.0}, "limits.tilt = 45 rad; allowed 0.05–1.2 rad (3°–69°)"),
+        ({"airframe.mass": 99.0}, "airframe.mass = 99 kg; allowed 0.005–50 kg"),
+        ({"limits.tilt_acceleration": -1.0}, "limits.tilt_acceleration = -1 rad/s²; allowed 0.1–500 rad/s²"),
         ({"controller.kind": 4}, "controller.kind = 4; allowed 1 (lmpc), 2 (ssmpc), 3 (dlqr)"),
-        ({"controller.position.terms": 0}, "controller.position.terms = 0; allowed 1 to "),
+        ({"controller.position.terms": 0}, "controller.position.terms = 0; allowed 1–"),
         ({"controller.attitude.lambda": 0.6}, "a = 0.63 is not below the degree of stability lambda = 0.6"),
         ({"environment.ground_plane": True, "initial.position.z": 2.0}, "initial.position.z = 2 m is below the ground"),
         ({"environment.ground_plane": True, "initial.position.z": 2.0}, "allowed up to 0.010 m"),

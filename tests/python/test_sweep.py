@@ -5,6 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import documents
 import numpy as np
 import pyarrow.dataset as dataset
 import pytest
@@ -35,6 +36,10 @@ def test_flights_are_those_that_are_flown_one_by_one(sweep, fmu, tmp_path):
     assert (tmp_path / "sweep" / "sweep.png").stat().st_size > 10_000
     flown = rows(tmp_path / "sweep" / "flights")
     assert [row["flight"] for row in flown] == list(range(6))
+    (block,) = documents.of("python", "sweep/flights")
+    read = subprocess.run([sys.executable, "-c", block.text], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    worst = sorted(flown, key=lambda row: -row["overshoot_m"])[:5]
+    assert [float(line.split()[1]) for line in read.stdout.splitlines()] == [row["overshoot_m"] for row in worst], read
     for row in flown:
         generator = np.random.default_rng([1, row["flight"]])
         values = {"airframe.mass": generator.uniform(0.6, 0.8), "disturbance.force.x": generator.uniform(-1, 1)}

@@ -289,48 +289,4 @@ fn prepared(
 }
 
 #[cfg(test)]
-mod tests {
-    use std::io::Write;
-    use std::path::Path;
-
-    use clap::CommandFactory;
-
-    use xtask::files;
-
-    use super::Workspace;
-
-    #[test]
-    fn arguments_are_consistent() {
-        super::Arguments::command().debug_assert();
-    }
-
-    /// The README's flight is the example of `quadrotor`'s front page, which is compiled and run.
-    #[test]
-    fn rust_code_of_the_readme_is_a_documentation_test() {
-        let workspace = Workspace::find().expect("cargo knows the workspace");
-        let read = |path: &str| files::read_text(&workspace.root().join(path)).expect("is there");
-        let readme = read("README.md");
-        let (_, rest) = readme.split_once("```rust\n").expect("the README has Rust code");
-        let (code, _) = rest.split_once("```").expect("the code ends");
-        let documentation = read("quadrotor/README.md");
-        for line in code.lines().filter(|line| !line.is_empty()) {
-            assert!(documentation.contains(&format!("{line}\n")), "not in quadrotor/README.md: {line}");
-        }
-    }
-
-    /// Says what plain `cargo test` leaves out; directly, because output of passing tests is not shown.
-    #[test]
-    fn python_tests_are_left_to_cargo_xtask_test() {
-        let workspace = Workspace::find().expect("cargo knows the workspace");
-        let files = files::names_in(&workspace.python_tests()).expect("is there");
-        let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let count = files.iter().filter(|path| name(path).starts_with("test_")).count();
-        assert!(count > 0, "the Python tests have moved");
-        if std::env::var_os(super::test::ALL_TESTS).is_none() {
-            let _ = writeln!(
-                std::io::stderr(),
-                "note: {count} files of tests in tests/python are left to `cargo xtask test`"
-            );
-        }
-    }
-}
+mod tests;

@@ -1,33 +1,31 @@
 //! The allowed values of a variable, for a person who has given another one.
 
-use super::{Choice, Quantity, Value, Variable};
+use super::{Choice, Quantity, Variable};
 use crate::model::Model;
 
 impl<M: Model> Variable<M> {
-    /// A value with its unit: "0.5 rad".
-    pub(super) fn with_unit(&self, value: Value) -> String {
-        match self.quantity().and_then(|quantity| quantity.unit) {
-            Some(unit) => format!("{value} {}", unit.name),
-            None => value.to_string(),
+    /// A number with its unit, and the numbers from `minimum` to `maximum`: "45 rad", "0.05 to 1.2 rad (2.9 to 68.8 deg)".
+    pub(crate) fn out_of_range(&self, value: f64, minimum: f64, maximum: f64) -> (String, String) {
+        let quantity = self.quantity();
+        let unit = quantity
+            .and_then(|quantity| quantity.unit)
+            .map_or(String::new(), |unit| format!(" {}", unit.name));
+        let mut allowed = format!("{} to {}{unit}", short(minimum), short(maximum));
+        if let Some((unit, factor)) = quantity.and_then(displayed) {
+            allowed += &format!(" ({:.1} to {:.1} {unit})", factor * minimum, factor * maximum);
         }
-    }
-
-    /// The allowed values between `minimum` and `maximum`: "0.05 to 1.2 rad (2.9 to 68.8 deg)", "1 (lmpc), 2 (ssmpc)".
-    pub(super) fn allowed(&self, minimum: Value, maximum: Value) -> String {
-        if let Some(choice) = self.choice() {
-            return items(choice);
-        }
-        let range = format!("{minimum} to {}", self.with_unit(maximum));
-        match (self.quantity().and_then(displayed), minimum, maximum) {
-            (Some((unit, factor)), Value::Real(minimum), Value::Real(maximum)) => {
-                format!("{range} ({:.1} to {:.1} {unit})", factor * minimum, factor * maximum)
-            }
-            _ => range,
-        }
+        (format!("{}{unit}", short(value)), allowed)
     }
 }
 
-fn items(choice: &Choice) -> String {
+/// A number in the fewest digits that read back as the same.
+fn short(number: f64) -> String {
+    let digits = format!("{number:?}");
+    digits.strip_suffix(".0").map_or(digits.clone(), str::to_owned)
+}
+
+/// The items of an enumeration: "1 (lmpc), 2 (ssmpc)".
+pub(super) fn items(choice: &Choice) -> String {
     let named = (1..).zip(choice.items).map(|(number, (name, _)): (i32, _)| format!("{number} ({name})"));
     named.collect::<Vec<_>>().join(", ")
 }

@@ -1,6 +1,7 @@
 //! One variable of a model.
 
 use super::access::Range;
+use super::allowed;
 use super::{Choice, Field, Quantity, Signal, Type, Value};
 use crate::error::CallError;
 use crate::model::Model;
@@ -239,7 +240,10 @@ impl<M: Model> Variable<M> {
         let (Some(minimum), Some(maximum)): Range = self.range() else { return Ok(()) };
         match (number(value), number(minimum), number(maximum)) {
             (Some(given), Some(least), Some(most)) if !(least..=most).contains(&given) => {
-                let (value, allowed) = (self.with_unit(value), self.allowed(minimum, maximum));
+                let (value, allowed) = match self.choice() {
+                    Some(choice) => (value.to_string(), allowed::items(choice)),
+                    None => M::out_of_range(self, given, least, most),
+                };
                 Err(CallError::OutOfRange { name: self.name, value, allowed })
             }
             _ => Ok(()),

@@ -13,7 +13,7 @@ use crate::flight_error::FlightError;
 use crate::quantities;
 use crate::tables::figures::{self, Designed};
 use crate::tables::terminals;
-use crate::tables::{arrays, numbers};
+use crate::tables::{arrays, numbers, ranges};
 
 /// The quadrotor with its controllers.
 pub struct ClosedLoop(Simulation);
@@ -63,6 +63,10 @@ impl Model for ClosedLoop {
 
     fn as_read(configuration: &Configuration) -> Cow<'_, Configuration> {
         Cow::Owned(configuration.as_read())
+    }
+
+    fn out_of_range(variable: &Variable<Self>, value: f64, minimum: f64, maximum: f64) -> (String, String) {
+        ranges::out_of_range(variable, value, minimum, maximum)
     }
 
     fn share() -> Box<dyn Any> {

@@ -20,7 +20,7 @@ use crate::designs;
 use crate::quantities;
 use crate::tables::figures::{self, Designed};
 use crate::tables::terminals;
-use crate::tables::{arrays, numbers};
+use crate::tables::{arrays, numbers, ranges};
 
 /// A communication step of more sample times of the attitude controller than that is warned of.
 const MOST_SAMPLES: u64 = 2;
@@ -157,6 +157,10 @@ impl Model for Controller {
 
     fn as_read(parameters: &ControllerParameters) -> Cow<'_, ControllerParameters> {
         parameters.as_read()
+    }
+
+    fn out_of_range(variable: &Variable<Self>, value: f64, minimum: f64, maximum: f64) -> (String, String) {
+        ranges::out_of_range(variable, value, minimum, maximum)
     }
 
     fn share() -> Box<dyn Any> {

@@ -14,7 +14,7 @@ use super::settings::{Drive, Settings};
 use super::{identity, inputs, outputs, parameters};
 use crate::flight_error::FlightError;
 use crate::tables::terminals;
-use crate::tables::{arrays, numbers};
+use crate::tables::{arrays, numbers, ranges};
 
 /// The quadrotor without its controllers.
 pub struct QuadrotorPlant {
@@ -78,6 +78,10 @@ impl Model for QuadrotorPlant {
 
     fn as_read(settings: &Settings) -> Cow<'_, Settings> {
         Cow::Owned(settings.as_read())
+    }
+
+    fn out_of_range(variable: &Variable<Self>, value: f64, minimum: f64, maximum: f64) -> (String, String) {
+        ranges::out_of_range(variable, value, minimum, maximum)
     }
 
     fn new(settings: &Settings, commands: &Commands) -> Result<Self, FlightError> {

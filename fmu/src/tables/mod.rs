@@ -11,6 +11,7 @@ pub(crate) mod identity;
 pub(crate) mod motion;
 pub(crate) mod numbers;
 pub(crate) mod parameters;
+pub(crate) mod ranges;
 pub(crate) mod references;
 pub(crate) mod rows;
 pub(crate) mod steering;

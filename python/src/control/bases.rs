@@ -8,7 +8,7 @@ use crate::arguments::{MOST, MOST_SAMPLES, number, whole};
 use crate::arrays::{array1, array2};
 use crate::errors;
 
-/// N discrete Laguerre functions with the scaling factor a.
+/// N = `terms` discrete Laguerre functions, 1 to 1000, with the scaling factor a = `scale`, 0 ≤ a < 1; a = 0 are unit pulses.
 #[pyclass(frozen, module = "lmpc_quadrotor.control")]
 #[derive(Clone)]
 pub struct LaguerreBasis(pub lmpc::LaguerreBasis);
@@ -21,6 +21,7 @@ impl LaguerreBasis {
         lmpc::LaguerreBasis::new(terms, scale).map(Self).map_err(|refusal| errors::design(&refusal))
     }
 
+    /// Functions that reach about `control_horizon` samples far: a = e^(−N/N_c).
     #[staticmethod]
     fn for_control_horizon(terms: &Bound<'_, PyAny>, control_horizon: &Bound<'_, PyAny>) -> PyResult<Self> {
         let (terms, horizon) =
@@ -29,27 +30,31 @@ impl LaguerreBasis {
         basis.map(Self).map_err(|refusal| errors::design(&refusal))
     }
 
+    /// N.
     #[getter]
     fn terms(&self) -> usize {
         self.0.terms()
     }
 
+    /// a.
     #[getter]
     fn scale(&self) -> f64 {
         self.0.scale()
     }
 
+    /// A_l, N×N: L(k+1) = A_l L(k).
     #[getter]
     fn a_l<'py>(&self, python: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         array2(python, self.0.a_l())
     }
 
+    /// L(0), N.
     #[getter]
     fn initial<'py>(&self, python: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array1(python, self.0.initial().as_slice())
     }
 
-    /// L(0) … L(samples − 1) as rows.
+    /// L(0), L(1), … as rows: samples×N, 10 000 samples at most.
     fn functions<'py>(
         &self,
         python: Python<'py>,

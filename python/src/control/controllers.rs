@@ -15,37 +15,43 @@ use crate::arguments::{objects_or_none, positive};
 use crate::arrays::{array1, elements, finite_vector_of, matrix, vector, vector_of};
 use crate::errors::{self, ArgumentError};
 
-/// u(k), and how it was found.
+/// What a controller decided at a sample.
 #[pyclass(frozen, module = "lmpc_quadrotor.control")]
 pub struct Step(Answer);
 
 #[pymethods]
 impl Step {
+    /// u(k), p: to be applied.
     #[getter]
     fn input<'py>(&self, python: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array1(python, &self.0.input)
     }
 
+    /// Δu(k), p.
     #[getter]
     fn increment<'py>(&self, python: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array1(python, &self.0.increment)
     }
 
+    /// The share of the integral action in Δu, p; zero under limits that are active.
     #[getter]
     fn integral<'py>(&self, python: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array1(python, &self.0.integral)
     }
 
+    /// How the input was found: "relaxed" when not all limits can be kept, "held" when a number was not finite.
     #[getter]
     fn status(&self) -> &'static str {
         self.0.status
     }
 
+    /// Of the solver; 0 when no limit was near.
     #[getter]
     fn iterations(&self) -> u32 {
         self.0.iterations
     }
 
+    /// Limits that are active.
     #[getter]
     fn active(&self) -> usize {
         self.0.active
@@ -56,7 +62,9 @@ impl Step {
     }
 }
 
-/// A control law with its state.
+/// A control law with its state: the last measurement, the last input, and the limits that were active.
+///
+/// At most 16 states, 4 inputs, as many outputs as inputs, and 64 Laguerre terms or moves of all inputs together.
 #[pyclass(module = "lmpc_quadrotor.control")]
 pub struct Controller {
     law: Box<dyn Law>,
@@ -192,6 +200,7 @@ fn check_limits(limits: &[lmpc::Limit], plant: &lmpc::StateSpace) -> PyResult<()
 
 #[pymethods]
 impl Controller {
+    /// Δu = −K [Δx; y − r] with K p×(n+q): a regulator, or Laguerre MPC without limits.
     #[staticmethod]
     fn state_feedback(python: Python<'_>, plant: &StateSpace, gain: &Bound<'_, PyAny>) -> PyResult<Self> {
         let (plant, gain) = (&plant.0, matrix("gain", gain)?);
@@ -206,6 +215,7 @@ impl Controller {
         Self::of(python, &Feedback { plant, gain: &gain }, plant, 0, 0)
     }
 
+    /// Laguerre MPC under limits. With `model_increment` the increment follows from the model: for actuators that lag.
     #[staticmethod]
     #[pyo3(
         signature = (design, limits = None, model_increment = false),
@@ -226,6 +236,7 @@ impl Controller {
         Self::of(python, &recipe, plant, terms, bounds)
     }
 
+    /// Laguerre MPC about a stabilizing feedback, under limits whose common slack of 1 costs `slack_cost`.
     #[staticmethod]
     #[pyo3(
         signature = (design, limits = None, slack_cost = None),
@@ -257,6 +268,7 @@ impl Controller {
         Self::of(python, &Stabilized { design, limits, slack_cost }, plant, terms, bounds)
     }
 
+    /// State-space MPC under limits; those of states bound the deviation from the reference.
     #[staticmethod]
     #[pyo3(signature = (design, limits = None), text_signature = "(design, limits=...)")]
     fn state_space_mpc(
@@ -271,6 +283,12 @@ impl Controller {
         Self::of(python, &Moves { design, limits }, &design.plant, terms, bounds)
     }
 
+    /// One sample: from the state `measured`, n, to the input, which is taken as applied: see `apply`.
+    ///
+    /// `reference` is the state to be in, n; `reference_increment` what a plant on a moving reference moves by, n;
+    /// `input_reference` the input that keeps it there, p; `disturbance` an estimate that acts as an input, p; `upper` the
+    /// values of all bounds, one limit after the other, none if left out; `preview` r(k), r(k+1), … as deviations from the
+    /// reference, a row of q numbers each, for `state_space_mpc`. What is left out is zero.
     #[pyo3(signature = (measured, reference = None, *, reference_increment = None, input_reference = None,
                         disturbance = None, upper = None, preview = None))]
     #[allow(clippy::too_many_arguments, reason = "keywords in Python")]
@@ -321,6 +339,7 @@ impl Controller {
         Ok(Step(self.law.step(&told)))
     }
 
+    /// Begins anew with a plant whose last state and input these were, n and p, p of it feed-forward; zero if left out.
     #[pyo3(signature = (measured = None, applied = None, input_reference = None))]
     fn take_over(
         &mut self,
@@ -336,24 +355,29 @@ impl Controller {
         Ok(())
     }
 
+    /// Reports the input that was applied in truth, p, so that saturation does not wind up the integral action.
+    ///
+    /// What is not finite is ignored.
     fn apply(&mut self, applied: &Bound<'_, PyAny>) -> PyResult<()> {
         self.law.apply(&vector_of("applied", Some(applied), self.inputs)?);
         Ok(())
     }
 
+    /// The state, to go on from with `restore`.
     fn save<'py>(&self, python: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let saved =
             self.law.save().map_err(|error| ArgumentError::new_err(format!("cannot save: {error}")))?;
         Ok(PyBytes::new(python, &saved))
     }
 
+    /// Goes on from a saved state of a controller of the same sizes.
     fn restore(&mut self, saved: &[u8]) -> PyResult<()> {
         self.law
             .restore(saved)
             .map_err(|error| ArgumentError::new_err(format!("saved is no state of this controller: {error}")))
     }
 
-    /// How many values of `upper` it takes.
+    /// How many values of `upper` a step takes.
     #[getter]
     fn bounds(&self) -> usize {
         self.bounds

@@ -13,7 +13,10 @@ use crate::errors::{self, ArgumentError};
 
 type Matrix<'py> = Bound<'py, PyArray2<f64>>;
 
-/// The infinite-horizon linear quadratic regulator Δu = −K x.
+/// The infinite-horizon regulator Δu = −K x of x(k+1) = A x + B Δu.
+///
+/// It minimizes Σ λ^(−2j) (xᵀQx + ΔuᵀRΔu), so that all eigenvalues of the closed loop are smaller than λ = `degree`, 0 < λ ≤ 1.
+/// Q must be symmetric and positive semidefinite, R symmetric and positive definite.
 #[pyclass(frozen, module = "lmpc_quadrotor.control")]
 pub struct Dlqr(lmpc::Dlqr);
 
@@ -35,6 +38,7 @@ impl Dlqr {
         design.map(Self).map_err(|refusal| errors::design(&refusal))
     }
 
+    /// The regulator of Σ α^(−2j) (xᵀQx + ΔuᵀRΔu), α ≥ 1: all eigenvalues are smaller than α, so it need not be stable.
     #[staticmethod]
     fn exponentially_weighted(
         a: &Bound<'_, PyAny>,
@@ -49,16 +53,19 @@ impl Dlqr {
         design.map(Self).map_err(|refusal| errors::design(&refusal))
     }
 
+    /// K, p×n.
     #[getter]
     fn gain<'py>(&self, python: Python<'py>) -> PyResult<Matrix<'py>> {
         array2(python, self.0.gain())
     }
 
+    /// P, n×n: from the state x on it costs xᵀPx.
     #[getter]
     fn cost<'py>(&self, python: Python<'py>) -> PyResult<Matrix<'py>> {
         array2(python, self.0.cost())
     }
 
+    /// What every eigenvalue of the closed loop is smaller than.
     #[getter]
     fn radius(&self) -> f64 {
         self.0.radius()
@@ -94,7 +101,16 @@ impl Problem {
     }
 }
 
-/// Laguerre MPC over a finite horizon.
+/// Laguerre MPC on the incremental model of a plant over N_p = `horizon` samples, 1 to 10 000, with a basis for each input.
+///
+/// Q is (n+q)×(n+q), R p×p. `weighting` says how the cost depends on the sample:
+///
+/// * "terminal": the regulator's cost stands at the end of the horizon; the better choice under limits;
+/// * "exponential": Wang's, with `alpha` ≥ 1; well conditioned for any horizon;
+/// * "literal": the paper's, which need not give a stable loop, and is refused then.
+///
+/// `degree` λ, 0 < λ ≤ 1: all eigenvalues of the closed loop are asked to be smaller. "terminal" takes no `alpha`, "literal" no
+/// `degree`.
 #[pyclass(frozen, module = "lmpc_quadrotor.control")]
 pub struct LmpcDesign {
     pub problem: Problem,
@@ -158,49 +174,59 @@ impl LmpcDesign {
         Ok(Self { problem, horizon, weighting, design })
     }
 
+    /// K, p×(n+q): without limits Δu = −K [Δx; y − r].
     #[getter]
     fn gain<'py>(&self, python: Python<'py>) -> PyResult<Matrix<'py>> {
         array2(python, self.design.gain())
     }
 
+    /// The gain of the infinite-horizon regulator of the same weights, p×(n+q).
     #[getter]
     fn dlqr_gain<'py>(&self, python: Python<'py>) -> PyResult<Matrix<'py>> {
         array2(python, self.design.dlqr().gain())
     }
 
+    /// Ω of the cost ηᵀΩη + 2ηᵀΨx, ΣN×ΣN.
     #[getter]
     fn omega<'py>(&self, python: Python<'py>) -> PyResult<Matrix<'py>> {
         array2(python, self.design.prediction().omega())
     }
 
+    /// Ψ, ΣN×(n+q).
     #[getter]
     fn psi<'py>(&self, python: Python<'py>) -> PyResult<Matrix<'py>> {
         array2(python, self.design.prediction().psi())
     }
 
+    /// Eigenvalues of A − BK, n+q.
     #[getter]
     fn closed_loop_eigenvalues<'py>(&self, python: Python<'py>) -> PyResult<Bound<'py, PyArray1<Complex64>>> {
         let found = self.design.closed_loop_eigenvalues().map_err(|refusal| errors::design(&refusal))?;
         Ok(complex(python, &found))
     }
 
+    /// Their largest magnitude, below 1.
     #[getter]
     fn spectral_radius(&self) -> f64 {
         self.design.spectral_radius()
     }
 
+    /// Of Ω.
     #[getter]
     fn condition_number(&self) -> f64 {
         self.design.condition_number()
     }
 
+    /// Share of the gain that rounding may have changed, at most.
     #[getter]
     fn gain_error(&self) -> f64 {
         self.design.gain_error()
     }
 }
 
-/// Laguerre MPC about a stabilizing feedback, over the infinite horizon.
+/// Laguerre MPC whose plan is about a slow, stabilizing feedback K_s, p×(n+q), over the infinite horizon.
+///
+/// Scaling factors of the bases must be below `degree`.
 #[pyclass(frozen, module = "lmpc_quadrotor.control")]
 pub struct StabilizedDesign {
     pub problem: Problem,
@@ -245,31 +271,37 @@ impl StabilizedDesign {
         Ok(Self { problem, stabilizing_gain, degree, design })
     }
 
+    /// K, p×(n+q): without limits Δu = −K [Δx; y − r].
     #[getter]
     fn gain<'py>(&self, python: Python<'py>) -> PyResult<Matrix<'py>> {
         array2(python, self.design.gain())
     }
 
+    /// K_s, p×(n+q).
     #[getter]
     fn stabilizing_gain<'py>(&self, python: Python<'py>) -> PyResult<Matrix<'py>> {
         array2(python, self.design.stabilizing_gain())
     }
 
+    /// S, (n+q+ΣN)²: a plan costs [x; η]ᵀ S [x; η].
     #[getter]
     fn cost<'py>(&self, python: Python<'py>) -> PyResult<Matrix<'py>> {
         array2(python, self.design.cost())
     }
 
+    /// The gain of the infinite-horizon regulator of the same weights, p×(n+q).
     #[getter]
     fn dlqr_gain<'py>(&self, python: Python<'py>) -> PyResult<Matrix<'py>> {
         array2(python, self.design.dlqr().gain())
     }
 
+    /// Largest magnitude of the eigenvalues of the closed loop, below 1.
     #[getter]
     fn spectral_radius(&self) -> f64 {
         self.design.spectral_radius()
     }
 
+    /// Of the part of S that belongs to η.
     #[getter]
     fn condition_number(&self) -> f64 {
         self.design.condition_number()
@@ -280,7 +312,10 @@ impl StabilizedDesign {
 const NAMES: [(&str, &str); 4] =
     [("Q", "output_weight"), ("S", "move_weight"), ("W", "increment_weight"), ("P", "terminal")];
 
-/// State-space MPC: one unknown per move.
+/// State-space MPC: `moves` unknowns for each input, 1 to 1000, within `horizon` samples, 2 to 10 000.
+///
+/// `output_weight` is q×q, on y − r; `move_weight` p×p, on Δu; `increment_weight` n×n, on Δx; `terminal` (n+q)×(n+q), on
+/// [Δx; y − r] at the end of the horizon, for instance the cost of a `Dlqr`.
 #[pyclass(frozen, module = "lmpc_quadrotor.control")]
 pub struct StateSpaceMpcDesign {
     pub plant: lmpc::StateSpace,
@@ -323,18 +358,20 @@ impl StateSpaceMpcDesign {
         Ok(Self { plant, weights, horizon, moves, design })
     }
 
-    /// K_x and K_u of the law without limits: Δu = −K_x (x − x_r) − K_u v.
+    /// K_x, p×n, and K_u, p×p: without limits Δu = −K_x (x − x_r) − K_u u(k−1), relative to the reference.
     #[getter]
     fn gains<'py>(&self, python: Python<'py>) -> PyResult<(Matrix<'py>, Matrix<'py>)> {
         let (state, input) = self.design.gains().map_err(|refusal| errors::design(&refusal))?;
         Ok((array2(python, &state)?, array2(python, &input)?))
     }
 
+    /// H of the quadratic program, p·moves squared.
     #[getter]
     fn hessian<'py>(&self, python: Python<'py>) -> PyResult<Matrix<'py>> {
         array2(python, self.design.hessian())
     }
 
+    /// Largest magnitude of the eigenvalues of the closed loop without limits, below 1.
     #[getter]
     fn spectral_radius(&self) -> f64 {
         self.design.spectral_radius()

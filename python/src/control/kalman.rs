@@ -17,7 +17,9 @@ const NAMES: [(&str, &str); 4] = [
     ("[W Z; Zᵀ V]", "state_noise, measurement_noise and cross together"),
 ];
 
-/// Design of the stationary predictor.
+/// The stationary predictor of x(k+1) = A x + B u + w, y = C x + v.
+///
+/// Covariances: `state_noise` of w, n×n; `measurement_noise` of v, q×q, positive definite; `cross` = E[w vᵀ], n×q.
 #[pyclass(frozen, module = "lmpc_quadrotor.control")]
 pub struct KalmanDesign {
     plant: lmpc::StateSpace,
@@ -45,18 +47,20 @@ impl KalmanDesign {
         Ok(Self { plant: plant.0.clone(), design })
     }
 
+    /// K, n×q.
     #[getter]
     fn gain<'py>(&self, python: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         array2(python, self.design.gain())
     }
 
+    /// Covariance of the error of the prediction, n×n.
     #[getter]
     fn covariance<'py>(&self, python: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         array2(python, self.design.covariance())
     }
 }
 
-/// The predictor of a design at run time: of any size, unlike [`lmpc::KalmanPredictor`], whose sizes are known when it is compiled.
+/// The predictor of a design at run time, from an estimate of n numbers on; zero if it is left out.
 #[pyclass(module = "lmpc_quadrotor.control")]
 pub struct KalmanPredictor {
     plant: lmpc::StateSpace,
@@ -77,13 +81,13 @@ impl KalmanPredictor {
         })
     }
 
-    /// x̂(k given k − 1).
+    /// x̂ of the next sample, n.
     #[getter]
     fn estimate<'py>(&self, python: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array1(python, self.estimate.as_slice())
     }
 
-    /// Goes on to the next sample and returns its estimate.
+    /// Goes on to the next sample, from u(k), p, and y(k), q; returns x̂(k+1), n. What is not finite is left out.
     fn predict<'py>(
         &mut self,
         python: Python<'py>,

@@ -179,7 +179,10 @@ where
     }
 
     fn restore(&mut self, saved: &[u8]) -> Result<(), postcard::Error> {
-        self.state = postcard::from_bytes(saved)?;
+        match postcard::take_from_bytes(saved)? {
+            (state, []) => self.state = state,
+            _ => return Err(postcard::Error::DeserializeBadEncoding),
+        }
         Ok(())
     }
 }

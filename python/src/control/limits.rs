@@ -11,7 +11,10 @@ use crate::errors::ArgumentError;
 /// Most components that the signal of a limit has.
 const MOST_COMPONENTS: usize = 3;
 
-/// directions · quantity ≤ upper at some future samples.
+/// directions · quantity ≤ upper on some samples of a plan, 0 to 10 000; the values `upper` are given at each step.
+///
+/// `quantity` is "increment" (Δu), "input" (u) or "state" (x). `directions` has a row for each bound and a column for each input
+/// or state. A `soft` limit gives way first when not all can be kept.
 #[pyclass(frozen, from_py_object, module = "lmpc_quadrotor.control")]
 #[derive(Clone)]
 pub struct Limit(pub lmpc::Limit);
@@ -53,6 +56,7 @@ impl Limit {
         Ok(Self(lmpc::Limit { quantity: quantity_of(quantity)?, directions, samples, soft }))
     }
 
+    /// Upper and lower bounds of `count` inputs or states, 1 to 1000: `upper` is [largest…, −smallest…].
     #[staticmethod]
     #[pyo3(signature = (quantity, count, samples, soft = false))]
     fn range(
@@ -66,6 +70,7 @@ impl Limit {
         Ok(Self(lmpc::Limit { soft, ..limit }))
     }
 
+    /// A joint bound of two inputs or states: a regular polygon of 3 to 1000 sides; `upper` = r cos(π/sides) lies inside the circle of radius r.
     #[staticmethod]
     #[pyo3(signature = (quantity, sides, samples, soft = false))]
     fn polygon(
@@ -86,7 +91,9 @@ impl Limit {
     }
 }
 
-/// directions · (C x + D u) ≤ upper at some future samples.
+/// directions · (C x + D u) ≤ upper on some samples, of a signal with at most three components.
+///
+/// `relaxation` is by how much each bound gives way per unit of the slack that all limits share, in units of the signal.
 #[pyclass(frozen, from_py_object, module = "lmpc_quadrotor.control")]
 #[derive(Clone)]
 pub struct SignalLimit(pub lmpc::SignalLimit);
@@ -124,7 +131,7 @@ impl SignalLimit {
         Ok(Self(lmpc::SignalLimit { state, input, directions, samples, relaxation }))
     }
 
-    /// Upper and lower bounds of the inputs of a plant with so many states.
+    /// Upper and lower bounds of all inputs: `upper` is [largest…, −smallest…].
     #[staticmethod]
     fn input_range(
         states: &Bound<'_, PyAny>,
@@ -138,7 +145,7 @@ impl SignalLimit {
         Ok(Self(limit.giving_way_by(positive("relaxation", relaxation)?)))
     }
 
-    /// Upper and lower bounds of some states, by their indices.
+    /// Upper and lower bounds of the states with these indices: `upper` is [largest…, −smallest…].
     #[staticmethod]
     fn state_range(
         states: &Bound<'_, PyAny>,

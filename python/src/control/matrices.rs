@@ -4,12 +4,12 @@ use numpy::{Complex64, PyArray1, PyArray2};
 use pyo3::prelude::*;
 
 use crate::arrays::{array2, complex, matrix};
-use crate::errors::{self, DesignError};
+use crate::errors::{self, ArgumentError, DesignError};
 
 type Matrix<'py> = Bound<'py, PyArray2<f64>>;
 type Eigenvalues<'py> = Bound<'py, PyArray1<Complex64>>;
 
-/// The stabilizing solution P of the discrete algebraic Riccati equation.
+/// The stabilizing solution P, n×n, of P = AᵀPA − AᵀPB (R + BᵀPB)⁻¹ BᵀPA + Q.
 #[pyfunction]
 fn solve_riccati<'py>(
     python: Python<'py>,
@@ -24,7 +24,7 @@ fn solve_riccati<'py>(
     array2(python, &p)
 }
 
-/// X of X = A X Bᵀ + C.
+/// X of X = A X Bᵀ + C for stable A and B.
 #[pyfunction]
 fn solve_stein<'py>(
     python: Python<'py>,
@@ -62,19 +62,25 @@ fn spectral_radius(a: &Bound<'_, PyAny>) -> PyResult<f64> {
     lmpc::spectral_radius("a", &matrix("a", a)?).map_err(|refusal| errors::design(&refusal))
 }
 
-/// The ratio of the largest to the smallest singular value.
+/// The ratio of the largest to the smallest singular value; infinite for a matrix without full rank.
 #[pyfunction]
 fn condition_number(a: &Bound<'_, PyAny>) -> PyResult<f64> {
     let a = matrix("a", a)?;
     if a.iter().any(|number| !number.is_finite()) {
         return Err(errors::design(&lmpc::DesignError::NotFinite { name: "a" }));
     }
+    if a.is_empty() {
+        let (rows, columns) = a.shape();
+        return Err(ArgumentError::new_err(format!(
+            "a is {rows}×{columns}; expected a row and a column at least"
+        )));
+    }
     // 0/0 of a matrix without a direction that it keeps.
     let ratio = lmpc::condition_number(&a);
     Ok(if ratio.is_nan() { f64::INFINITY } else { ratio })
 }
 
-/// Eigenvalues of the part of (A, B) that B cannot reach.
+/// Eigenvalues of the part of (A, B) that B cannot reach; none when the pair is controllable.
 #[pyfunction]
 fn uncontrollable_eigenvalues<'py>(
     python: Python<'py>,
@@ -85,7 +91,7 @@ fn uncontrollable_eigenvalues<'py>(
     Ok(complex(python, &found.map_err(|refusal| errors::design(&refusal))?))
 }
 
-/// Eigenvalues of the part of (A, C) that C does not show.
+/// Eigenvalues of the part of (A, C) that C does not show; none when the pair is observable.
 #[pyfunction]
 fn unobservable_eigenvalues<'py>(
     python: Python<'py>,

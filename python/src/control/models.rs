@@ -8,7 +8,9 @@ use crate::arguments::{above_zero, number, number_or};
 use crate::arrays::{array2, matrix};
 use crate::errors::{self, ArgumentError};
 
-/// A discrete linear plant x(k+1) = A x(k) + B u(k), y(k) = C x(k).
+/// A discrete linear plant x(k+1) = A x(k) + B u(k), y(k) = C x(k), with A n×n, B n×p and C q×n.
+///
+/// Raises `DesignError` when the shapes do not fit or a number is not finite.
 #[pyclass(frozen, module = "lmpc_quadrotor.control")]
 pub struct StateSpace(pub lmpc::StateSpace);
 
@@ -20,6 +22,7 @@ impl StateSpace {
         plant.map(Self).map_err(|refusal| errors::design(&refusal))
     }
 
+    /// From ẋ = A x + B u, y = C x, sampled every `sample_time` s, which must be positive.
     #[staticmethod]
     #[pyo3(signature = (a, b, c, sample_time, discretization = "zero_order_hold"))]
     fn from_continuous(
@@ -44,6 +47,7 @@ impl StateSpace {
         plant.map(Self).map_err(|refusal| errors::design(&refusal))
     }
 
+    /// From A, B, C and D, q×p, of y(k) = C x(k) + D u(k−1). The states are [x(k); u(k−1)].
     #[staticmethod]
     fn with_direct_term(
         a: &Bound<'_, PyAny>,
@@ -56,37 +60,43 @@ impl StateSpace {
         plant.map(Self).map_err(|refusal| errors::design(&refusal))
     }
 
+    /// A, n×n.
     #[getter]
     fn a<'py>(&self, python: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         array2(python, self.0.a())
     }
 
+    /// B, n×p.
     #[getter]
     fn b<'py>(&self, python: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         array2(python, self.0.b())
     }
 
+    /// C, q×n.
     #[getter]
     fn c<'py>(&self, python: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         array2(python, self.0.c())
     }
 
+    /// n.
     #[getter]
     fn states(&self) -> usize {
         self.0.states()
     }
 
+    /// p.
     #[getter]
     fn inputs(&self) -> usize {
         self.0.inputs()
     }
 
+    /// q.
     #[getter]
     fn outputs(&self) -> usize {
         self.0.outputs()
     }
 
-    /// A, B and C of the incremental model with the states [Δx; y − r].
+    /// A, (n+q)×(n+q), B, (n+q)×p, and C, q×(n+q), of the incremental model with the states [Δx; y − r].
     #[allow(clippy::type_complexity, reason = "three arrays, as Python takes them")]
     fn augmented<'py>(
         &self,
@@ -96,7 +106,7 @@ impl StateSpace {
         Ok((array2(python, model.a())?, array2(python, model.b())?, array2(python, model.c())?))
     }
 
-    /// The weights Q = output · CᵀC and R = increment · I of the incremental model.
+    /// Q = output · CᵀC, (n+q)×(n+q), and R = increment · I, p×p, of the incremental model.
     #[pyo3(signature = (output = None, increment = None), text_signature = "($self, output=1.0, increment=1.0)")]
     #[allow(clippy::type_complexity, reason = "two arrays, as Python takes them")]
     fn output_weights<'py>(

@@ -63,7 +63,8 @@ impl ClosedLoopVehicle for Member {
     }
 }
 
-/// Many flights that go on side by side on several threads. Each is that of a [`super::simulation::Simulation`], whatever the others do.
+/// Many flights in whole µs: `lmpc_quadrotor.Fleet` is beside it.
+// Each flight is that of a `Simulation`, whatever the others do.
 #[pyclass(module = "lmpc_quadrotor._native")]
 pub struct Fleet {
     fleet: quadrotor::Fleet<Member>,
@@ -89,6 +90,14 @@ impl<'py> Each<'py> {
         }
     }
 
+    /// A refused value, with the vehicle that it is for where each has its own.
+    fn refused(&self, python: Python<'_>, vehicle: usize, refusal: PyErr) -> PyErr {
+        match self {
+            Self::Same(_) => refusal,
+            Self::Own(_) => refusal_of(python, vehicle, &refusal),
+        }
+    }
+
     fn of(&self, vehicle: usize) -> PyResult<Bound<'py, PyAny>> {
         match self {
             Self::Same(value) => Ok(value.clone()),
@@ -102,7 +111,7 @@ impl Fleet {
         let mut changed = commands.to_vec();
         for (name, value) in values {
             let name: String = name.extract()?;
-            let input = Input::of(values.py(), &name)?;
+            let input = Input::of(&name)?;
             let numbers = vector(&name, &value)?;
             if numbers.len() != 1 && numbers.len() != changed.len() {
                 return Err(ArgumentError::new_err(format!(
@@ -112,16 +121,22 @@ impl Fleet {
                 )));
             }
             for (vehicle, commands) in changed.iter_mut().enumerate() {
-                input.set(commands, if numbers.len() == 1 { numbers[0] } else { numbers[vehicle] })?;
+                match numbers.as_slice() {
+                    [number] => input.set(commands, *number)?,
+                    own => {
+                        let set = input.set(commands, own[vehicle]);
+                        set.map_err(|refusal| refusal_of(values.py(), vehicle, &refusal))?;
+                    }
+                }
             }
         }
         commands.copy_from_slice(&changed);
         Ok(())
     }
 
-    fn chosen(&self, python: Python<'_>, names: Option<Vec<String>>) -> PyResult<Vec<Output>> {
+    fn chosen(&self, names: Option<Vec<String>>) -> PyResult<Vec<Output>> {
         match names {
-            Some(names) => outputs::named(python, &names, self.actuation),
+            Some(names) => outputs::named(&names, self.actuation),
             None => Ok(outputs::of(self.actuation).collect()),
         }
     }
@@ -173,6 +188,11 @@ fn members(
     Ok(kinds.of_each.into_iter().map(member).collect())
 }
 
+/// A parameter or an input that is refused, as that of a vehicle.
+fn refusal_of(python: Python<'_>, vehicle: usize, refusal: &PyErr) -> PyErr {
+    ParameterError::new_err(format!("vehicle {vehicle}: {}", refusal.value(python)))
+}
+
 /// A refusal, as one of a vehicle.
 fn of_vehicle(vehicle: usize) -> impl Fn(String) -> String {
     move |refusal| format!("vehicle {vehicle}: {refusal}")
@@ -200,10 +220,11 @@ impl Fleet {
         let mut configurations = vec![Configuration::default(); count];
         for (name, value) in parameters {
             let name: String = name.extract()?;
-            let parameter = parameters::of(python, &name)?;
+            let parameter = parameters::of(&name)?;
             let values = Each::new(&name, &value, count)?;
             for (vehicle, configuration) in configurations.iter_mut().enumerate() {
-                parameters::set(configuration, parameter, &values.of(vehicle)?)?;
+                let set = parameters::set(configuration, parameter, &values.of(vehicle)?);
+                set.map_err(|refusal| values.refused(python, vehicle, refusal))?;
             }
         }
         let mut commands: Vec<Commands> = configurations
@@ -267,7 +288,7 @@ impl Fleet {
         python: Python<'py>,
         names: Option<Vec<String>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let chosen = self.chosen(python, names)?;
+        let chosen = self.chosen(names)?;
         let rows = python.detach(|| self.rows(&chosen));
         PyArray1::from_vec(python, rows).reshape([self.fleet.len(), chosen.len()])
     }
@@ -282,7 +303,7 @@ impl Fleet {
         step_us: u64,
         names: Option<Vec<String>>,
     ) -> PyResult<(Bound<'py, PyArray1<u64>>, Bound<'py, PyArray3<f64>>)> {
-        let chosen = self.chosen(python, names)?;
+        let chosen = self.chosen(names)?;
         let instants = instants(0, duration_us, step_us)?;
         let begun: Vec<u64> = self.fleet.vehicles().map(|member| member.vehicle.time_us()).collect();
         let mut table = room(instants.len(), self.fleet.len() * chosen.len())?;

@@ -5,6 +5,7 @@ use fmi::variables::{Field, Role, Variable};
 use fmu::ClosedLoop;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use quadrotor::ValueRange;
 
 use super::commands::Commands;
 use super::suggestion;
@@ -91,11 +92,10 @@ pub fn all() -> impl Iterator<Item = Input> {
 
 impl Input {
     /// The input of a name.
-    pub fn of(python: Python<'_>, name: &str) -> PyResult<Self> {
-        all().find(|input| input.name() == name).ok_or_else(|| {
-            let known: Vec<&'static str> = all().map(|input| input.name()).collect();
-            suggestion::unknown(python, "input", name, &known)
-        })
+    pub fn of(name: &str) -> PyResult<Self> {
+        all()
+            .find(|input| input.name() == name)
+            .ok_or_else(|| suggestion::unknown("input", name, all().map(Self::name)))
     }
 
     /// Its name.
@@ -161,11 +161,9 @@ impl Input {
         if let Some((minimum, maximum)) = self.range()
             && !(minimum..=maximum).contains(&value)
         {
-            let (name, unit) = (self.name(), self.unit());
-            let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-            return Err(ParameterError::new_err(format!(
-                "{name} = {value}{unit}; allowed {minimum} to {maximum}{unit}"
-            )));
+            let range = ValueRange { minimum, maximum, unit: self.unit() };
+            let (name, value) = (self.name(), range.quantity(value));
+            return Err(ParameterError::new_err(format!("{name} = {value}; allowed {range}")));
         }
         if self.is_switch() && value != 0.0 && value != 1.0 {
             let name = self.name();
@@ -186,7 +184,7 @@ impl Input {
     }
 }
 
-/// What is known of each input: a dictionary by name, with `description`, `unit`, `minimum` and `maximum`.
+/// All inputs by name, each with description, unit, minimum and maximum; a switch has no range.
 #[pyfunction]
 pub fn inputs<'py>(python: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
     let table = PyDict::new(python);

@@ -39,11 +39,10 @@ pub fn of(actuation: Actuation) -> impl Iterator<Item = Output> {
 }
 
 /// The outputs of some names.
-pub fn named(python: Python<'_>, names: &[String], actuation: Actuation) -> PyResult<Vec<Output>> {
+pub fn named(names: &[String], actuation: Actuation) -> PyResult<Vec<Output>> {
     let find = |name: &String| {
         let Some(output) = all().find(|output| output.variable.name == name) else {
-            let known: Vec<&'static str> = all().map(|output| output.variable.name).collect();
-            return Err(suggestion::unknown(python, "output", name, &known));
+            return Err(suggestion::unknown("output", name, all().map(Output::name)));
         };
         match of(actuation).any(|known| known.variable.name == output.variable.name) {
             true => Ok(output),
@@ -77,7 +76,7 @@ impl Output {
     }
 }
 
-/// What is known of each output: a dictionary by name, with `description`, `unit`, `whole` and, where it counts items, `items`.
+/// All outputs by name, each with description, unit, whether it is whole, and the items that it counts, if any.
 #[pyfunction]
 pub fn outputs<'py>(python: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
     let table = PyDict::new(python);

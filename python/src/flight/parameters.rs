@@ -9,10 +9,9 @@ use crate::arguments::shown;
 use crate::errors::ParameterError;
 
 /// The parameter of a name.
-pub fn of(python: Python<'_>, name: &str) -> PyResult<&'static Parameter> {
+pub fn of(name: &str) -> PyResult<&'static Parameter> {
     PARAMETERS.iter().find(|parameter| parameter.name == name).ok_or_else(|| {
-        let known: Vec<&'static str> = PARAMETERS.iter().map(|parameter| parameter.name).collect();
-        suggestion::unknown(python, "parameter", name, &known)
+        suggestion::unknown("parameter", name, PARAMETERS.iter().map(|parameter| parameter.name))
     })
 }
 
@@ -85,8 +84,7 @@ pub fn read<'py>(python: Python<'py>, configuration: &Configuration) -> PyResult
     Ok(values)
 }
 
-/// What is known of each parameter: a dictionary by name, with `description`, `unit`, `type`, `start`, `minimum`, `maximum` and,
-/// where it has a choice, `items`.
+/// All parameters by name, each with description, unit, type, start, tunable, and minimum and maximum or items.
 #[pyfunction]
 pub fn parameters<'py>(python: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
     let table = PyDict::new(python);

@@ -42,7 +42,10 @@ impl Saved {
         let body = bytes
             .strip_prefix(&MAGIC)
             .ok_or_else(|| ArgumentError::new_err("saved is no flight that this version has saved"))?;
-        postcard::from_bytes(body)
-            .map_err(|error| ArgumentError::new_err(format!("saved is damaged: {error}")))
+        match postcard::take_from_bytes(body) {
+            Ok((saved, [])) => Ok(saved),
+            Ok(_) => Err(ArgumentError::new_err("saved is damaged: it is longer than a saved flight")),
+            Err(error) => Err(ArgumentError::new_err(format!("saved is damaged: {error}"))),
+        }
     }
 }

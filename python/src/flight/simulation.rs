@@ -20,7 +20,7 @@ use crate::interruption::Interruption;
 /// What is flown between looks whether the user has interrupted, µs: some milliseconds of the wall clock.
 const PIECE_US: u64 = 10_000_000;
 
-/// One flight, in integer µs: what is in seconds and by field names is beside it, in Python.
+/// One flight in whole µs: `lmpc_quadrotor.Simulation` is beside it.
 #[pyclass(module = "lmpc_quadrotor._native")]
 pub struct Simulation(Vehicle);
 
@@ -70,7 +70,7 @@ impl Simulation {
         let mut changed = *commands;
         for (name, value) in values {
             let name: String = name.extract()?;
-            let input = Input::of(values.py(), &name)?;
+            let input = Input::of(&name)?;
             let number = match value.extract::<f64>() {
                 Ok(number) => number,
                 Err(_) => {
@@ -86,9 +86,9 @@ impl Simulation {
         Ok(())
     }
 
-    fn chosen(&self, python: Python<'_>, names: Option<Vec<String>>) -> PyResult<Vec<Output>> {
+    fn chosen(&self, names: Option<Vec<String>>) -> PyResult<Vec<Output>> {
         match names {
-            Some(names) => outputs::named(python, &names, self.0.actuation()),
+            Some(names) => outputs::named(&names, self.0.actuation()),
             None => Ok(outputs::of(self.0.actuation()).collect()),
         }
     }
@@ -111,7 +111,7 @@ fn fly(vehicle: &mut Vehicle, time_us: u64, interruption: &mut Interruption) -> 
 /// Sets parameters of a configuration.
 pub fn configured(configuration: &mut Configuration, values: &Bound<'_, PyDict>) -> PyResult<()> {
     for (name, value) in values {
-        let parameter = parameters::of(values.py(), &name.extract::<String>()?)?;
+        let parameter = parameters::of(&name.extract::<String>()?)?;
         parameters::set(configuration, parameter, &value)?;
     }
     Ok(())
@@ -195,8 +195,7 @@ impl Simulation {
         names: Option<Vec<String>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let outputs = self.0.outputs();
-        let values: Vec<f64> =
-            self.chosen(python, names)?.iter().map(|output| output.get(&outputs)).collect();
+        let values: Vec<f64> = self.chosen(names)?.iter().map(|output| output.get(&outputs)).collect();
         Ok(array1(python, &values))
     }
 
@@ -219,7 +218,7 @@ impl Simulation {
         step_us: u64,
         names: Option<Vec<String>>,
     ) -> PyResult<(Bound<'py, PyArray1<u64>>, Bound<'py, PyArray2<f64>>)> {
-        let chosen = self.chosen(python, names)?;
+        let chosen = self.chosen(names)?;
         let instants = instants(self.0.time_us(), end_us, step_us)?;
         let vehicle = &mut self.0;
         let mut rows = room(instants.len(), chosen.len())?;

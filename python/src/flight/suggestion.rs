@@ -1,7 +1,7 @@
 //! What somebody probably meant by a name that there is not.
 
 use pyo3::prelude::*;
-use quadrotor::PARAMETERS;
+use quadrotor::{PARAMETERS, nearest_name};
 
 use super::inputs;
 use super::outputs;
@@ -24,16 +24,11 @@ fn has(kind: &str, name: &str) -> bool {
 }
 
 /// The error about an unknown name of a kind.
-pub fn unknown(python: Python<'_>, kind: &str, name: &str, known: &[&'static str]) -> PyErr {
+pub fn unknown<'a>(kind: &str, name: &str, known: impl IntoIterator<Item = &'a str>) -> PyErr {
     if let Some((_, remedy)) = KINDS.iter().find(|(other, _)| *other != kind && has(other, name)) {
         return ParameterError::new_err(format!("there is no {kind} {name}; {remedy}"));
     }
-    let close = python
-        .import("difflib")
-        .and_then(|difflib| difflib.call_method1("get_close_matches", (name, known.to_vec(), 1)))
-        .and_then(|found| found.extract::<Vec<String>>())
-        .unwrap_or_default();
-    let remedy = match close.first() {
+    let remedy = match nearest_name(name, known) {
         Some(close) => format!("did you mean {close}?"),
         None => format!("`lmpc_quadrotor.{kind}s()` lists all"),
     };

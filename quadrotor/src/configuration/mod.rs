@@ -2,6 +2,7 @@
 
 pub(crate) mod error;
 pub(crate) mod for_airframe;
+pub(crate) mod nearest_name;
 pub(crate) mod parameter;
 pub(crate) mod parameters;
 pub(crate) mod quantity;

@@ -34,15 +34,19 @@ impl ValueRange {
     }
 }
 
-/// A number in the shortest form that reads back as the same: as single precision where it has no more.
+/// A number in the shortest form that reads back as the same: as single precision where it has no more, and is not a count.
 struct Short(f64);
+
+/// Up to here every whole number is a double.
+const WHOLE: f64 = 9_007_199_254_740_992.0;
 
 impl Display for Short {
     fn fmt(&self, to: &mut Formatter<'_>) -> Result {
         let magnitude = libm::fabs(self.0);
         let scientific = self.0.is_finite() && magnitude != 0.0 && !(1e-3..1e6).contains(&magnitude);
         let single = self.0 as f32;
-        match (f64::from(single) == self.0, scientific) {
+        let counts = magnitude < WHOLE && libm::trunc(self.0) == self.0;
+        match (f64::from(single) == self.0 && !counts, scientific) {
             (true, true) => write!(to, "{single:e}"),
             (true, false) => write!(to, "{single}"),
             (false, true) => write!(to, "{:e}", self.0),
@@ -86,6 +90,8 @@ mod tests {
             (1e-9, 1e9, "", f64::NAN, "NaN; 1e-9–1e9"),
             (0.005, 50.0, "kg", f64::from(0.001_f32), "0.001 kg; 0.005–50 kg"),
             (0.0, 3.0, "", 4.0, "4; 0–3"),
+            (0.0, 2_147_483_647.0, "", -2_147_483_648.0, "-2.147483648e9; 0–2.147483647e9"),
+            (0.0, 1.0, "", f64::from(f32::MAX), "3.4028235e38; 0–1"),
         ] {
             let range = ValueRange { minimum, maximum, unit };
             assert!(!range.contains(value));

@@ -4,10 +4,9 @@ use std::ffi::OsString;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use quadrotor::{AirframePreset, Configuration};
+use quadrotor::{AirframePreset, Configuration, nearest_name};
 use vehicle::{BatteryPack, Notice, Severity};
 
-use super::suggestion::nearest;
 use super::{Addressed, airframe_file};
 use crate::failure::Failure;
 
@@ -51,7 +50,8 @@ impl fmt::Display for AirframeChoice {
 /// An airframe that there is not.
 fn unknown(name: &str) -> String {
     let presets = AirframePreset::ALL.map(AirframePreset::name);
-    let meant = nearest(name, presets).map(|meant| format!("; did you mean {meant}?")).unwrap_or_default();
+    let meant =
+        nearest_name(name, presets).map(|meant| format!("; did you mean {meant}?")).unwrap_or_default();
     format!("unknown airframe `{name}`; allowed {} or a FILE.toml{meant}", presets.join(", "))
 }
 

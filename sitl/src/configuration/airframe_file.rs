@@ -2,14 +2,13 @@
 
 use std::path::Path;
 
-use quadrotor::{Airframe, AirframePreset, Configuration, Direction, Rotor, RotorLayout};
+use quadrotor::{Airframe, AirframePreset, Configuration, Direction, Rotor, RotorLayout, nearest_name};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use vehicle::Conduct;
 use vehicle::identity::Identity;
 use vehicle::parameters::{ParameterTable, ParameterValues, Speed, Statistics};
 
-use super::suggestion::nearest;
 use super::text_file::read_text;
 use crate::failure::Failure;
 
@@ -161,7 +160,7 @@ fn set(setting: &Setting<'_>, values: &mut ParameterValues) -> Result<(), String
     if entry.is_none() {
         let known = table.entries().iter().filter_map(|entry| entry.dotted());
         let ours = known.filter(|known| GROUPS.iter().any(|group| known.starts_with(group)));
-        return Err(match nearest(name, ours.chain([PRESET, LAYOUT])) {
+        return Err(match nearest_name(name, ours.chain([PRESET, LAYOUT])) {
             Some(meant) => format!("unknown name {name}; did you mean {meant}?"),
             None => format!("unknown name {name}; allowed are the names of airframe, limits and controller"),
         });

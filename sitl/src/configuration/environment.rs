@@ -2,8 +2,9 @@
 
 use std::ffi::{OsStr, OsString};
 
+use quadrotor::nearest_name;
+
 use super::help::command;
-use super::suggestion::nearest;
 use crate::failure::Failure;
 
 /// What the names of our variables begin with.
@@ -23,7 +24,7 @@ pub fn check(names: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
     let name = name.to_string_lossy().into_owned();
     let flag = |name: &str| name.strip_prefix(PREFIX).map(str::to_owned).unwrap_or_default();
     let flags: Vec<String> = known.iter().map(|name| flag(name)).collect();
-    let remedy = match nearest(&flag(&name), flags.iter().map(String::as_str)) {
+    let remedy = match nearest_name(&flag(&name), flags.iter().map(String::as_str)) {
         Some(meant) => format!("did you mean {PREFIX}{meant}?"),
         None => format!("unset it; {PREFIX}NAME sets the flag of that name, see --help"),
     };

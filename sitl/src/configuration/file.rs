@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use clap::{Arg, Command, CommandFactory, FromArgMatches};
+use quadrotor::nearest_name;
 use toml::{Spanned, Value};
 
-use super::suggestion::nearest;
 use super::text_file::read_text;
 use super::{Arguments, mistake};
 use crate::failure::Failure;
@@ -43,7 +43,7 @@ fn setting(command: &mut Command, name: &str, value: &Value) -> Result<Arguments
     if !is_setting(command, name) {
         let settings =
             command.get_arguments().filter_map(Arg::get_long).filter(|flag| is_setting(command, flag));
-        return Err(match nearest(name, settings) {
+        return Err(match nearest_name(name, settings) {
             Some(meant) => format!("unknown setting `{name}`; did you mean `{meant}`?"),
             None => format!("unknown setting `{name}`; settings have the names of the flags, see --help"),
         });

@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use quadrotor::PARAMETERS;
+use quadrotor::{PARAMETERS, nearest_name};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 use vehicle::foreign::ForeignRole;
 
 use super::axes::Axes;
 use super::signals::{ARMED, names};
-use crate::configuration::{nearest, read_text};
+use crate::configuration::read_text;
 use crate::failure::Failure;
 
 /// Keys that stand above the first table, and tables.
@@ -116,7 +116,7 @@ impl Map {
                     map.parameters(text, "", table.map_err(place)?)?;
                 }
                 name => {
-                    let meant = nearest(name, KEYS).map(|meant| format!("; did you mean {meant}?"));
+                    let meant = nearest_name(name, KEYS).map(|meant| format!("; did you mean {meant}?"));
                     let meant = meant.unwrap_or_else(|| format!("; allowed are {}", KEYS.join(", ")));
                     return Err(place(format!("unknown key `{name}`{meant}")));
                 }
@@ -211,7 +211,7 @@ fn known(name: &str) -> Result<(), String> {
         return Err(format!("{name} has several parts; map each of them: {}", parts.join(", ")));
     }
     let parameters = PARAMETERS.iter().map(|parameter| parameter.name);
-    Err(match nearest(name, signals.iter().map(String::as_str).chain(parameters)) {
+    Err(match nearest_name(name, signals.iter().map(String::as_str).chain(parameters)) {
         Some(meant) => format!("unknown name {name}; did you mean {meant}?"),
         None => format!(
             "unknown name {name}; the left side is one of our names, such as position.x or {ARMED}: see --fmu-check"

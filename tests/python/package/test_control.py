@@ -262,6 +262,9 @@ def design_of(horizon=100, bases=None, **options):
         (lambda: next(limited())[1].take_over([np.inf, 0.0]), "measured contains inf; expected finite numbers"),
         (lambda: Controller.state_feedback(PLANT, [[np.nan, 1.0, 1.0]]), "gain contains a value that is not finite"),
         (lambda: Controller.laguerre_mpc(design_of(), [SignalLimit.input_range(2, 1, [0], 1.0)]), "expected a list of Limit"),
+        (lambda: condition_number(np.zeros((0, 3))), "a is 0×3; expected a row and a column at least"),
+        (lambda: Dlqr([[1.0]], [[0.0]], [[1.0]], [[1.0]]), "the mode at 1 is not controllable, so no gain stabilizes it"),
+        (lambda: next(limited())[1].restore(next(limited())[1].save() + b"\0"), "saved is no state of this controller"),
         (lambda: condition_number([[np.nan]]), "a contains a value that is not finite"),
         (lambda: unobservable_eigenvalues([[1.0]], [[1.0, 2.0]]), "C is 1×2, expected 1×1"),
         (lambda: SignalLimit.input_range(2, 1, [0], -1.0), "relaxation = -1 is outside (0, ∞)"),
@@ -300,7 +303,7 @@ def test_what_was_not_applied_is_left_out():
 def test_designs_that_fail_say_why():
     model = StateSpace.from_continuous(A, B, C, 0.05)
     q, r = model.output_weights()
-    with pytest.raises(DesignError, match="bases: 2 Laguerre bases given for 1 inputs"):
+    with pytest.raises(DesignError, match="bases: 2 Laguerre bases given; expected 1, one for each input"):
         LmpcDesign(model, q, r, [LaguerreBasis(3, 0.5)] * 2, 50)
     with pytest.raises(DesignError, match="horizon: prediction horizon N_p = 2 is shorter than the 3 terms"):
         LmpcDesign(model, q, r, [LaguerreBasis(3, 0.5)], 2)

@@ -1,6 +1,8 @@
 """What the wheel holds, and its programs."""
 
+import ast
 import base64
+import inspect
 import json
 import os
 import re
@@ -19,7 +21,7 @@ from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
 
 import lmpc_quadrotor
-from lmpc_quadrotor import Simulation, fmu_path, sitl_path
+from lmpc_quadrotor import Fleet, Simulation, fmu_path, sitl_path
 from lmpc_quadrotor.view import flight_page
 
 PACKAGE = Path(lmpc_quadrotor.__file__).parent
@@ -103,6 +105,28 @@ def test_types_are_those_of_the_module(tmp_path):
     ]:
         checked = subprocess.run([sys.executable, "-m", module, *arguments], capture_output=True, text=True, cwd=tmp_path, timeout=240)
         assert checked.returncode == 0, checked.stdout + checked.stderr
+
+
+def documented(body, owner):
+    """The names of a stub with what the module says of them, and what the stub says."""
+    for node in body:
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and (text := ast.get_docstring(node)):
+            yield f"{owner.__name__}.{node.name}", inspect.getdoc(getattr(owner, node.name)), text
+        if isinstance(node, ast.ClassDef):
+            yield from documented(node.body, getattr(owner, node.name))
+
+
+def test_help_says_what_the_stubs_say():
+    """`help` shows shapes and units, as an editor does."""
+    from lmpc_quadrotor import _native, control
+
+    texts = list(documented(ast.parse((PACKAGE / "_native.pyi").read_text()).body, _native))
+    assert len(texts) > 90
+    assert [(name, said) for name, said, text in texts if said != text] == []
+    # What users reach has a text, whether it is written in Python or in Rust.
+    public = [control, *(getattr(control, name) for name in control.__all__), Simulation, Fleet]
+    members = [getattr(thing, name) for thing in public if inspect.isclass(thing) for name in vars(thing) if not name.startswith("_")]
+    assert [thing for thing in [*public, *members] if not inspect.getdoc(thing)] == []
 
 
 def test_a_csv_file_of_fmpy_is_shown(tmp_path):

@@ -1,5 +1,6 @@
 """The live page in a headless Chromium. The oracle is telemetry over MAVLink, and a projection of our own."""
 
+import json
 import math
 import socket
 import subprocess
@@ -249,6 +250,42 @@ def test_missions_and_fences_are_drawn_where_they_are(start, look, tmp_path):
     stage = shown.page.locator("#stage").bounding_box()
     box = shown.page.locator("#labels .waypoint").last.bounding_box()
     assert math.dist((box["x"], box["y"]), expected) < 30, (box, expected, stage)
+
+
+def test_a_camera_beyond_a_fence_looks_through_its_wall(start, look, tmp_path):
+    """The oracle is the sky's own colour: a wall between it and the camera would tint it."""
+    degree = math.degrees(1 / 6_371_000.0)
+    start_at = (47.397742, 8.545594)
+    corners = [[start_at[0] + 8 * n * degree, start_at[1] + 8 * e * degree / math.cos(math.radians(start_at[0]))] for n, e in ((0, 0), (2, 0), (2, 2), (0, 2))]
+    plan = {"fileType": "Plan", "version": 1, "groundStation": "test", "rallyPoints": {"version": 2, "points": []},
+            "mission": {"version": 2, "firmwareType": 12, "vehicleType": 2, "cruiseSpeed": 5, "hoverSpeed": 5, "items": [], "plannedHomePosition": [*start_at, 488]},
+            "geoFence": {"version": 2, "circles": [], "polygons": []}}
+    colours = {}
+    for keeps_in in (True, False):
+        for turned in (False, True):
+            zone = {"polygon": corners[::-1] if turned else corners, "inclusion": keeps_in, "version": 1}
+            (tmp_path / "fence.plan").write_text(json.dumps({**plan, "geoFence": {**plan["geoFence"], "polygons": [zone]}}))
+            vehicle = start("--view", "127.0.0.1:0", "--mission", str(tmp_path / "fence.plan"))
+            shown = look(vehicle.ready["view"])
+            shown.wait("page.scene.vehicles[0]?.fence?.zones.length === 1 && page.frame")
+            shown.page.get_by_role("button", name="Follow").click()
+            shown.fine()
+            # In the middle of the zone, and just west of it: steeply up, through one wall of 30 m.
+            for inside, east, slope in ((True, 8, 1), (False, -2, 12)):
+                at, aim = [east, 3, -8], [east + 1, 3 + slope, -8]
+                colours[keeps_in, turned, inside] = shown.page.evaluate("""async ([at, aim]) => {
+                    const { view } = window.lmpcView;
+                    view.camera.position.set(...at);
+                    view.camera.lookAt(...aim);
+                    view.renderer.clear();
+                    view.renderer.render(view.scene, view.camera);
+                    const gl = view.renderer.getContext(), pixel = new Uint8Array(4);
+                    gl.readPixels(gl.drawingBufferWidth / 2, gl.drawingBufferHeight / 2, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+                    return [...pixel.slice(0, 3)];
+                }""", [at, aim])
+    sky = colours[False, False, True]
+    for (keeps_in, _, inside), colour in colours.items():
+        assert (colour != sky) == (keeps_in == inside), colours
 
 
 HILL = "[[hill]]\ncenter = [20.0, 0.0]\nradius = 15.0\ntop = 3.0\nheight = 6.0\n"

@@ -1,10 +1,9 @@
 //! What a misspelt name may mean.
 
+use quadrotor::nearest_name;
+
 use super::Entry;
 use super::entry::Source;
-
-/// Least similarity of a name that is suggested: one letter in three may differ.
-const SIMILAR: f64 = 0.65;
 
 /// The name that may be meant, dotted for a dotted one. Former names suggest the present one, and the name that a parameter has for
 /// another autopilot the one that it has here.
@@ -19,15 +18,10 @@ pub(super) fn suggestion(name: &str, entries: &[Entry]) -> Option<&'static str> 
     if let Some(entry) = elsewhere {
         return Some(entry.id);
     }
-    let known = entries.iter().flat_map(|entry| {
-        if name.contains('.') {
-            return [entry.dotted().map(|dotted| (dotted, dotted)), None];
-        }
-        [Some((entry.id, entry.id)), entry.former.map(|former| (former, entry.id))]
-    });
-    let given = if name.contains('.') { name } else { upper.as_str() };
-    let rated =
-        known.flatten().map(|(known, meant)| (strsim::normalized_damerau_levenshtein(given, known), meant));
-    let similar = rated.filter(|(similarity, _)| *similarity >= SIMILAR);
-    similar.max_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, meant)| meant)
+    if name.contains('.') {
+        return nearest_name(name, entries.iter().filter_map(Entry::dotted));
+    }
+    let names = entries.iter().flat_map(|entry| [Some(entry.id), entry.former]);
+    let known = nearest_name(&upper, names.flatten())?;
+    entries.iter().find(|entry| entry.id == known || entry.former == Some(known)).map(|entry| entry.id)
 }

@@ -1,7 +1,7 @@
 // What stands still: missions, fences, homes and obstacles.
 
 import {
-  BufferGeometry, DoubleSide, EdgesGeometry, ExtrudeGeometry, Group, Line, LineBasicMaterial, LineDashedMaterial, LineSegments, Mesh,
+  BackSide, BufferGeometry, DoubleSide, EdgesGeometry, ExtrudeGeometry, FrontSide, Group, Line, LineBasicMaterial, LineDashedMaterial, LineSegments, Mesh,
   MeshBasicMaterial, MeshLambertMaterial, RingGeometry, Shape, SphereGeometry, Vector3,
 } from "../three/three.module.min.js";
 import { place } from "./axes.js";
@@ -16,6 +16,15 @@ function circle([north, east], radius) {
     const angle = (2 * Math.PI * index) / CORNERS;
     return [north + radius * Math.cos(angle), east + radius * Math.sin(angle)];
   });
+}
+
+/** Whether the front of a wall around corners, north and east, is within it: by the direction in which they go around. */
+function facesIn(corners) {
+  const areas = corners.map(([north, east], index) => {
+    const [nextNorth, nextEast] = corners[(index + 1) % corners.length];
+    return east * nextNorth - nextEast * north;
+  });
+  return areas.reduce((sum, area) => sum + area, 0) > 0;
 }
 
 export class Surroundings {
@@ -71,13 +80,16 @@ export class Surroundings {
 
   fence({ home_m: [north, east, down], radius_m, height_m, zones }, colours) {
     const top = height_m > 0 ? height_m - down : WALL - down;
-    if (radius_m > 0) this.wall(circle([north, east], radius_m), top, colours.fence, 0.07);
-    for (const { inclusion, corners_m } of zones) this.wall(corners_m, top, colours.fence, inclusion ? 0.07 : 0.25);
-    if (radius_m === 0 && height_m > 0 && zones.length === 0) this.wall(circle([north, east], 50), top, colours.fence, 0.03);
+    if (radius_m > 0) this.wall(circle([north, east], radius_m), top, colours.fence, 0.07, true);
+    for (const { inclusion, corners_m } of zones) this.wall(corners_m, top, colours.fence, inclusion ? 0.07 : 0.25, inclusion);
+    if (radius_m === 0 && height_m > 0 && zones.length === 0) this.wall(circle([north, east], 50), top, colours.fence, 0.03, true);
   }
 
-  /** A wall around corners, from the ground to a height. */
-  wall(corners, height, colour, opacity) {
+  /**
+   * A wall around corners, from the ground to a height. It is seen from one side, within what it keeps in and outside of what it keeps
+   * out: a camera on the other side looks through it.
+   */
+  wall(corners, height, colour, opacity, keepsIn) {
     const ends = [...corners, corners[0]].map(([north, east]) => [place([north, east, 0]), place([north, east, -height])]);
     const geometry = new BufferGeometry().setFromPoints(ends.flat());
     const index = [];
@@ -86,7 +98,7 @@ export class Surroundings {
       index.push(low, low + 1, low + 2, low + 1, low + 3, low + 2);
     }
     geometry.setIndex(index);
-    const material = new MeshBasicMaterial({ color: colour, transparent: true, opacity, side: DoubleSide, depthWrite: false });
+    const material = new MeshBasicMaterial({ color: colour, transparent: true, opacity, side: facesIn(corners) === keepsIn ? FrontSide : BackSide, depthWrite: false });
     const edge = () => new LineBasicMaterial({ color: colour });
     this.group.add(new Mesh(geometry, material));
     this.group.add(new Line(new BufferGeometry().setFromPoints(ends.map(([low]) => low.clone().setY(0.05))), edge()));

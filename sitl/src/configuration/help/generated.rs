@@ -6,10 +6,10 @@ use clap::Command;
 use clap_complete::Shell;
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, bold, italic, roman};
+use quadrotor::nearest_name;
 
 use super::command;
 use super::topic::TOPICS;
-use crate::configuration::nearest;
 
 /// What the program does, in paragraphs.
 const DESCRIPTION: &[&str] = &[
@@ -63,7 +63,7 @@ impl Form {
         if let Some(form) = Self::ALL.into_iter().find(|form| form.name() == name) {
             return Ok(form);
         }
-        let meant = nearest(name, Self::ALL.iter().map(|form| form.name()));
+        let meant = nearest_name(name, Self::ALL.iter().map(|form| form.name()));
         let meant = meant.map(|meant| format!("; did you mean {meant}?")).unwrap_or_default();
         Err(format!("must be {}, not `{name}`{meant}", Self::names()))
     }

@@ -1,8 +1,7 @@
 //! Topics of the long help: some flags, and what is to be known beside them.
 
 use clap::Command;
-
-use crate::configuration::nearest;
+use quadrotor::nearest_name;
 
 /// What stands for all topics.
 pub const ALL: &str = "all";
@@ -74,7 +73,7 @@ pub fn find(word: &str) -> Result<Vec<&'static Topic>, String> {
         return Ok(vec![topic]);
     }
     let flags = TOPICS.iter().flat_map(|topic| topic.flags);
-    let meant = nearest(flag, names().chain(flags.copied()));
+    let meant = nearest_name(flag, names().chain(flags.copied()));
     let meant = meant.map(|meant| format!("; did you mean `{meant}`?")).unwrap_or_default();
     let names: Vec<&str> = names().collect();
     Err(format!("`{word}` is not a topic{meant} (topics: {})", names.join(", ")))

@@ -1,11 +1,11 @@
 //! Variables of signals: by the map, else by our names.
 
 use importer::description::{Causality, Kind, ModelDescription, Unit, Variable};
+use quadrotor::nearest_name;
 
 use super::super::map::{Entry, Map};
 use super::super::mapping::{Channel, Conversion};
 use super::super::signals::Group;
-use crate::configuration::nearest;
 
 /// Names that a message lists.
 const MOST_NAMES: usize = 12;
@@ -179,7 +179,7 @@ fn channel(
 /// A variable that the FMU does not have.
 pub(super) fn unknown(signal: &str, name: &str, description: &ModelDescription) -> String {
     let names = description.variables.iter().map(|variable| variable.name.as_str());
-    match nearest(name, names.clone()) {
+    match nearest_name(name, names.clone()) {
         Some(meant) => format!("{signal}: the FMU has no variable `{name}`; did you mean `{meant}`?"),
         None => format!("{signal}: the FMU has no variable `{name}`; it has {}", listed(names.collect())),
     }
