@@ -323,7 +323,11 @@ impl Estimator {
             velocity: ratio(&diagnostics.gnss_velocity),
             horizontal_position: ratio(&diagnostics.gnss_position),
             height: ratio(&diagnostics.baro_altitude),
-            heading: ratio(&diagnostics.mag_heading),
+            heading: ratio(if diagnostics.gnss_heading.has_been_used() {
+                &diagnostics.gnss_heading
+            } else {
+                &diagnostics.mag_heading
+            }),
         };
         self.estimate.resets = self.resets;
     }

@@ -56,6 +56,7 @@ impl Vehicle {
         }
         if self.can_be_told_origin() {
             self.setup.tell_origin(origin);
+            self.plan_again();
             return Ok(());
         }
         let distance_m = self.frame().to_local_m(&origin).norm();
