@@ -1,4 +1,4 @@
-//! MAV_CMD_SET_EKF_SOURCE_SET, which ArduPilot has: what the estimator fuses is one set.
+//! MAV_CMD_SET_EKF_SOURCE_SET, which ArduPilot has: what the estimator fuses is one of three sets.
 
 use mavlink::dialects::ardupilotmega::MavCmd;
 use vehicle::Refusal;
@@ -10,16 +10,16 @@ use crate::envelope::Origin;
 
 const COMMANDS: &[CommandEntry] = &[CommandEntry::action(MavCmd::MAV_CMD_SET_EKF_SOURCE_SET as u16)];
 
-/// The number of the set.
-const ONLY: f64 = 1.0;
+/// Numbers of the sets.
+const SETS: [f64; 3] = [1.0, 2.0, 3.0];
 
-/// Takes the set that is used, and no other.
+/// Lets the estimator use a set.
 #[derive(Clone, Copy, Debug)]
 pub struct EstimatorSources;
 
 impl Service for EstimatorSources {
     fn summary(&self) -> &'static str {
-        "Sources of the estimator: the first set"
+        "Sources of the estimator: one of three sets"
     }
 
     fn commands(&self) -> &'static [CommandEntry] {
@@ -30,9 +30,13 @@ impl Service for EstimatorSources {
         if !context.identity().is_ardupilot() {
             return Err(Refusal::Unsupported("Only ArduPilot has a command for source sets".to_owned()));
         }
-        match command.parameter(1) {
-            ONLY => Ok(Progress::Done),
-            set => Err(Refusal::denied(format!("Source set {set} does not exist: only 1 (EK3_SRC1_…)"))),
-        }
+        let number = command.parameter(1);
+        let Some(set) = SETS.iter().position(|known| *known == number) else {
+            return Err(Refusal::denied(format!(
+                "Source set {number} does not exist: 1, 2 or 3 (EK3_SRC1_…)"
+            )));
+        };
+        context.vehicle.use_source_set(set);
+        Ok(Progress::Done)
     }
 }

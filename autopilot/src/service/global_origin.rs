@@ -58,9 +58,11 @@ impl Service for GlobalOrigin {
     }
 }
 
-/// Moves the origin, and tells everyone. ArduPilot does so only before it knows where it is, and this vehicle always knows.
+/// Moves the origin, and tells everyone. ArduPilot does so only before it knows where it is, and this vehicle always knows, unless it
+/// flies by vision and has never had a fix.
 fn move_origin(context: &mut Context, origin: Geodetic) -> Result<(), Refusal> {
-    if context.identity().is_ardupilot() {
+    let is_known = context.vehicle.knows_origin() || !context.vehicle.can_be_told_origin();
+    if context.identity().is_ardupilot() && is_known {
         return Err(Refusal::denied("Origin refused: ArduPilot's origin is already set; start with --home"));
     }
     context.vehicle.move_origin(origin)?;

@@ -58,6 +58,7 @@ mod terrain;
 mod time_synchronization;
 pub(crate) mod traffic;
 mod utm_position;
+mod vision;
 
 pub use identification::version;
 pub(crate) use interface::{CommandEntry, Outcome, Progress, Repetition, Service};

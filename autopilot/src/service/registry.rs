@@ -58,6 +58,7 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::shell::Shell),
         Box::new(super::landing_target::LandingTargets),
         Box::new(super::gps_input::GpsInput::default()),
+        Box::new(super::vision::Vision::default()),
         Box::new(super::button::Buttons::default()),
         Box::new(super::traffic::Traffic),
         Box::new(super::remote_id::RemoteIdentification),

@@ -2,6 +2,7 @@
 
 use nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use quadrotor::GRAVITY_M_S2;
+use vehicle::estimation::aiding::Aiding;
 use vehicle::estimation::{Estimate, Navigation, SensorErrors, TrueMotion};
 use vehicle::fault::Faults;
 use vehicle::world::{Geodetic, LocalFrame};
@@ -66,7 +67,8 @@ fn fly(seed: u64, seconds: f64, mut look: impl FnMut(&Navigation, &TrueMotion)) 
     for tick in 1..=(seconds * 1000.0) as u64 {
         let motion = motion(tick * 1000);
         let resting = motion.time_us as f64 / 1e6 <= REST_S;
-        navigation.step(&motion, &frame(), &Faults::default(), &SensorErrors::default(), resting);
+        let (errors, aiding) = (SensorErrors::default(), Aiding::default());
+        navigation.step(&motion, &frame(), &Faults::default(), &errors, &aiding, resting);
         look(&navigation, &motion);
     }
     navigation

@@ -69,6 +69,7 @@ mod survey;
 mod terrain;
 mod traffic;
 mod vehicle_loss;
+mod vision;
 mod wind_drag;
 mod wind_hold;
 

@@ -3,7 +3,7 @@
 
 use fusion_nav::{
     Acceleration, Altitude, AngularRate, Covariance, ErrorState, Eskf, Fusion, ImuSample, MagField, Position,
-    PositionNoise, Seconds, SourceHealth, State, StaticSample, StaticWindow, Status, Timestamp, Velocity,
+    PositionNoise, Seconds, SourceHealth, State, StaticSample, StaticWindow, Timestamp, Velocity,
     VelocityNoise,
 };
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -15,7 +15,7 @@ use super::inertial::InertialReading;
 use super::lockout::Lockout;
 use super::magnetometer::MagnetometerReading;
 use super::release::Release;
-use super::tuning;
+use super::tuning::{self, OutsideGates};
 
 /// Time between predictions, µs: the default rate at which PX4 integrates its inertial unit, 200 Hz. It divides the
 /// samples of the controllers.
@@ -32,24 +32,32 @@ const NO_LEVER: [f32; 3] = [0.0; 3];
 /// The estimator.
 #[derive(Clone, Debug)]
 pub struct Estimator {
-    filter: Eskf,
+    pub(super) filter: Eskf,
     /// What has been measured at rest, until there is enough to align by.
-    window: StaticWindow,
+    pub(super) window: StaticWindow,
     /// Inertial readings since the last prediction.
     pending: Option<ImuSample>,
     /// Time of the last inertial reading and of the last prediction, µs.
     read_us: u64,
-    predicted_us: u64,
+    pub(super) predicted_us: u64,
     /// The latest readings that the window has not had yet.
     altitude: Option<Altitude>,
     field: Option<MagField<fusion_nav::Body>>,
     estimate: Estimate,
-    resets: u32,
+    pub(super) resets: u32,
     lockout: Lockout,
-    position_release: Release,
-    velocity_release: Release,
+    pub(super) position_release: Release,
+    pub(super) velocity_release: Release,
     /// Whether a leap of the position is still to be told.
-    leaps: bool,
+    pub(super) leaps: bool,
+    /// With which gates it fuses estimates from outside, if there are any.
+    pub(super) outside: Option<OutsideGates>,
+    /// Whether that has ever changed.
+    pub(super) has_changed: bool,
+    /// When something has told the place or the velocity last, µs.
+    pub(super) aided_us: Option<u64>,
+    /// Whether the next fix tells the place, whatever the filter believes.
+    returns: bool,
 }
 
 impl Estimator {
@@ -77,7 +85,16 @@ impl Estimator {
             position_release: Release::new(POSITION_RELEASE_M_S),
             velocity_release: Release::new(VELOCITY_RELEASE_M_S2),
             leaps: false,
+            outside: None,
+            has_changed: false,
+            aided_us: None,
+            returns: false,
         }
+    }
+
+    /// Positions are the receiver's again, after they were somebody else's: the next fix tells the place.
+    pub fn return_to_gps(&mut self) {
+        self.returns = true;
     }
 
     /// Takes a reading of the inertial unit in. Every 5 ms the estimate goes on.
@@ -117,6 +134,11 @@ impl Estimator {
         if !self.filter.is_initialized() {
             return true;
         }
+        if std::mem::take(&mut self.returns) {
+            self.move_to_fix(fix);
+            return true;
+        }
+        let fix = &self.seen(fix);
         let before = self.filter.state();
         let time = Timestamp::from_micros(fix.time_us);
         let (horizontal, vertical) = (fix.horizontal_accuracy_m as f32, fix.vertical_accuracy_m as f32);
@@ -137,6 +159,9 @@ impl Estimator {
         self.resets += u32::from(place.is_reset()) + u32::from(motion.is_reset());
         self.leaps |= place.is_reset();
         self.hold_back(&before);
+        if fitted(place.horizontal) && fix.tells_place() || fitted(motion) && fix.tells_velocity() {
+            self.note_aid();
+        }
         if self.lockout.update(fix, fitted(motion)) && starts_again {
             self.start_again(fix);
         }
@@ -181,6 +206,11 @@ impl Estimator {
     /// The estimate of the last prediction.
     pub fn estimate(&self) -> &Estimate {
         &self.estimate
+    }
+
+    /// Whether it fuses: it has measured at rest what it begins with.
+    pub fn can_fuse(&self) -> bool {
+        self.filter.is_initialized()
     }
 
     /// Whether it has found its attitude.
@@ -244,7 +274,7 @@ impl Estimator {
     }
 
     /// Holds back what a measurement has corrected since `before`.
-    fn hold_back(&mut self, before: &State) {
+    pub(super) fn hold_back(&mut self, before: &State) {
         let now = self.filter.state();
         let position = double(now.position.to_array()) - double(before.position.to_array());
         let velocity = double(now.velocity.to_array()) - double(before.velocity.to_array());
@@ -275,7 +305,7 @@ impl Estimator {
         body.velocity_m_s = double(state.velocity.to_array()) - held_velocity;
         body.attitude = UnitQuaternion::new_normalize(attitude).into_inner();
         body.body_rate_rad_s = reading.body_rate_rad_s - double(state.gyro_bias.to_array());
-        let aided = state.status != Status::DeadReckoning;
+        let aided = self.is_aided(state.status);
         self.estimate.validity = Validity {
             tilt: state.validity.tilt,
             heading: state.validity.heading,
@@ -293,7 +323,11 @@ impl Estimator {
             velocity: ratio(&diagnostics.gnss_velocity),
             horizontal_position: ratio(&diagnostics.gnss_position),
             height: ratio(&diagnostics.baro_altitude),
-            heading: ratio(&diagnostics.mag_heading),
+            heading: ratio(if diagnostics.gnss_heading.has_been_used() {
+                &diagnostics.gnss_heading
+            } else {
+                &diagnostics.mag_heading
+            }),
         };
         self.estimate.resets = self.resets;
     }
@@ -304,14 +338,14 @@ fn ratio(source: &SourceHealth) -> f64 {
 }
 
 /// Whether a measurement was what was expected, or has become so.
-fn fitted(outcome: Fusion) -> bool {
+pub(super) fn fitted(outcome: Fusion) -> bool {
     outcome.is_accepted() || outcome.is_reset()
 }
 
-fn single(vector: &Vector3<f64>) -> [f32; 3] {
+pub(super) fn single(vector: &Vector3<f64>) -> [f32; 3] {
     vector.data.0[0].map(|value| value as f32)
 }
 
-fn double(vector: [f32; 3]) -> Vector3<f64> {
+pub(super) fn double(vector: [f32; 3]) -> Vector3<f64> {
     Vector3::from(vector.map(f64::from))
 }

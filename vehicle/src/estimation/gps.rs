@@ -88,6 +88,11 @@ impl GpsFix {
         self.horizontal_accuracy_m <= WORST_M
     }
 
+    /// Whether it tells where the vehicle is on the map.
+    pub fn tells_place(&self) -> bool {
+        self.horizontal_accuracy_m < UNKNOWN_M
+    }
+
     /// Whether it tells how fast the vehicle is on the map.
     pub fn tells_velocity(&self) -> bool {
         self.velocity_accuracy_m_s < UNKNOWN_M_S

@@ -49,6 +49,7 @@ impl IdealSensors {
             magnetometer: self.is_heard(Sensor::Magnetometer, PATIENCE_US),
             barometer: self.is_heard(Sensor::Barometer, PATIENCE_US),
             gps: self.is_heard(Sensor::Gps, PATIENCE_US),
+            vision: false,
         }
     }
 

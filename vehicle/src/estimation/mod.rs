@@ -10,12 +10,16 @@
 //! The filter is the crate `fusion-nav`; what it is told of the instruments stands in `tuning.rs`. The linear Kalman
 //! predictor (26) of the closed loop stays behind it: it estimates what pushes the vehicle.
 //!
+//! Estimates from outside, of motion capture or visual odometry, come as messages and are fused like fixes (`vision/`), by the choice
+//! of each autopilot's parameters (`aiding/`).
+//!
 //! A fault stands between an instrument and everybody who reads it (`defect.rs`). Ideal sensors (`ideal.rs`) have no
 //! noise and need no estimator; faults can only silence them.
 //!
 //! Each instrument's figures stand in its file, beside the part and the data sheet that they are from; what no data sheet
 //! has is marked as assumed.
 
+pub mod aiding;
 pub mod barometer;
 mod defect;
 mod estimate;
@@ -28,12 +32,14 @@ mod lockout;
 pub mod magnetometer;
 mod navigation;
 mod noise;
+mod outside_aid;
 mod release;
 mod sensor_errors;
 mod settings;
 mod true_motion;
 mod tuning;
 mod vibration;
+pub mod vision;
 mod wander;
 mod watch;
 

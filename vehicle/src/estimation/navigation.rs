@@ -1,15 +1,20 @@
 //! Instruments and estimator together, tick by tick.
 
+use std::collections::VecDeque;
+
+use super::aiding::{Aiding, GpsUse};
 use super::barometer::{self, Barometer, BarometerReading};
 use super::defect::{Axes, Defect};
 use super::estimate::Estimate;
 use super::estimator::Estimator;
-use super::gps::{self, GpsFix, GpsReceiver};
+use super::gps::{self, GpsFix, GpsReceiver, UNKNOWN_M, UNKNOWN_M_S};
 use super::inertial::{InertialReading, InertialUnit};
 use super::magnetometer::{self, Magnetometer, MagnetometerReading};
 use super::sensor_errors::{ErrorSource, SensorErrors};
 use super::true_motion::TrueMotion;
+use super::tuning::OutsideGates;
 use super::vibration::Vibration;
+use super::vision::{VisionFusion, VisionReading, VisionTerms};
 use super::watch::{Trust, Watch};
 use crate::fault::{Faults, Sensor};
 use crate::world::{LocalFrame, atmospheric_pressure_pa, earth_field_ned};
@@ -21,6 +26,12 @@ const INERTIAL_PATIENCE_US: u64 = 50_000;
 const PATIENCE_US: u64 = 500_000;
 /// A receiver without a new fix for longer has lost its position, µs.
 const FIX_PATIENCE_US: u64 = 1_000_000;
+/// The same of estimates from outside.
+const VISION_PATIENCE_US: u64 = 1_000_000;
+/// Most estimates from outside that wait for a tick.
+const MOST_SEEN: usize = 8;
+/// They usually come 30 times a second, µs.
+const VISION_PERIOD_US: u64 = 33_333;
 
 /// The latest readings.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -48,6 +59,8 @@ pub struct InstrumentHealth {
     pub barometer: bool,
     /// GPS receiver.
     pub gps: bool,
+    /// Estimates from outside.
+    pub vision: bool,
 }
 
 impl Readings {
@@ -92,6 +105,11 @@ pub struct Navigation {
     gps: GpsReceiver,
     /// A fix from outside that has not been looked at.
     received: Option<GpsFix>,
+    /// Estimates from outside that have not been looked at.
+    seen: VecDeque<VisionReading>,
+    vision: VisionFusion,
+    /// What is fused.
+    aiding: Aiding,
     barometer: Barometer,
     magnetometer: Magnetometer,
     estimator: Estimator,
@@ -104,9 +122,11 @@ pub struct Navigation {
     barometer_watch: Watch,
     magnetometer_watch: Watch,
     gps_watch: Watch,
+    vision_watch: Watch,
     barometer_trust: Trust,
     magnetometer_trust: Trust,
     gps_trust: Trust,
+    vision_trust: Trust,
     time_us: u64,
 }
 
@@ -117,6 +137,9 @@ impl Navigation {
             inertial: InertialUnit::new(seed),
             gps: GpsReceiver::new(seed, gps::LATENCY_US),
             received: None,
+            seen: VecDeque::with_capacity(MOST_SEEN),
+            vision: VisionFusion::default(),
+            aiding: Aiding::default(),
             barometer: Barometer::new(seed),
             magnetometer: Magnetometer::new(seed),
             estimator: Estimator::new(start),
@@ -135,9 +158,11 @@ impl Navigation {
             barometer_watch: Watch::default(),
             magnetometer_watch: Watch::default(),
             gps_watch: Watch::default(),
+            vision_watch: Watch::default(),
             barometer_trust: Trust::default(),
             magnetometer_trust: Trust::default(),
             gps_trust: Trust::default(),
+            vision_trust: Trust::default(),
             time_us: 0,
         }
     }
@@ -149,10 +174,12 @@ impl Navigation {
         frame: &LocalFrame,
         faults: &Faults,
         errors: &SensorErrors,
+        aiding: &Aiding,
         stands: bool,
     ) {
         let time_us = motion.time_us;
         self.time_us = time_us;
+        self.choose(aiding);
         let errors = Some(errors).filter(|errors| **errors != SensorErrors::default());
         self.read_inertial(motion, faults, errors);
         let mut altitude_m = frame.origin().altitude_m - motion.position_m.z;
@@ -178,8 +205,11 @@ impl Navigation {
         let fault = faults.sensor(Sensor::Magnetometer);
         if let Some(reading) = reading.and_then(|reading| self.defects.magnetometer.tell(reading, fault)) {
             self.magnetometer_watch.update(time_us, reading.field_gauss.into());
-            let fitted = self.estimator.magnetometer(&reading);
-            self.magnetometer_trust.update(fitted, magnetometer::PERIOD_US);
+            let is_fused = !aiding.vision.is_some_and(|vision| self.vision.has_heading(time_us, &vision));
+            if is_fused || !self.estimator.is_aligned() {
+                let fitted = self.estimator.magnetometer(&reading);
+                self.magnetometer_trust.update(fitted, magnetometer::PERIOD_US);
+            }
             self.readings.magnetometer = Some(reading);
         }
         let fault = faults.sensor(Sensor::Gps);
@@ -206,16 +236,76 @@ impl Navigation {
         };
         if let Some(fix) = received.or(simulated).and_then(|fix| self.defects.gps.tell(fix, fault)) {
             let starts_again = errors.is_none_or(|errors| errors.switches.starts_again);
-            let fitted = fix.is_accurate() && self.estimator.gps(&fix, starts_again);
+            let fitted = fix.is_accurate()
+                && used(&fix, aiding.gps).is_none_or(|fix| self.estimator.gps(&fix, starts_again));
             self.gps_trust.update(fitted, period_us);
             // Who measures better than a receiver may say the same again.
             let news = if by_message { [fix.time_us as f64, 0.0, 0.0] } else { fix.position_m.into() };
             self.gps_watch.update(time_us, news);
             self.readings.gps = Some(fix);
         }
+        self.fuse_vision(stands);
         if stands && time_us.is_multiple_of(STANDS_PERIOD_US) {
             self.estimator.stands(time_us);
         }
+    }
+
+    /// Fuses what is to be fused from now on.
+    fn choose(&mut self, aiding: &Aiding) {
+        let before = std::mem::replace(&mut self.aiding, *aiding);
+        if before == *aiding {
+            return;
+        }
+        self.estimator.fuse_outside_with(aiding.vision.map(|vision| OutsideGates {
+            position: vision.position_gate.max(1.0),
+            velocity: vision.velocity_gate.max(1.0),
+        }));
+        if before.vision.map(|vision| vision.uses) != aiding.vision.map(|vision| vision.uses)
+            || before.gps != aiding.gps
+        {
+            self.vision.begin_anew();
+        }
+        if aiding.gps.position && !before.gps.position {
+            self.estimator.return_to_gps();
+        }
+    }
+
+    /// Fuses the estimates from outside that have come.
+    fn fuse_vision(&mut self, stands: bool) {
+        let Some(settings) = self.aiding.vision else {
+            self.seen.clear();
+            return;
+        };
+        if self.estimator.can_fuse() && self.estimator.estimate().time_us == self.time_us {
+            self.vision.remember(&self.estimator);
+        }
+        let gps_works = self.gps_watch.is_alive(self.time_us, FIX_PATIENCE_US);
+        let beside_gps = self.aiding.gps.position && gps_works;
+        let terms = VisionTerms { now_us: self.time_us, settings, beside_gps, stands };
+        while let Some(reading) = self.seen.pop_front() {
+            let fitted = self.vision.fuse(&mut self.estimator, &reading, &terms);
+            self.vision_trust.update(fitted, VISION_PERIOD_US);
+            if settings.uses.wants(&reading) {
+                self.vision_watch.update(self.time_us, [self.time_us as f64, 0.0, 0.0]);
+            }
+        }
+    }
+
+    /// An estimate comes from outside, to be looked at with the next tick.
+    pub fn receive_vision(&mut self, reading: VisionReading) {
+        if self.seen.len() < MOST_SEEN {
+            self.seen.push_back(reading);
+        }
+    }
+
+    /// What is fused.
+    pub fn aiding(&self) -> &Aiding {
+        &self.aiding
+    }
+
+    /// Whether the heading is that of estimates from outside.
+    pub fn has_vision_heading(&self) -> bool {
+        self.aiding.vision.is_some_and(|vision| self.vision.has_heading(self.time_us, &vision))
     }
 
     /// A fix comes from outside, to be looked at with the next tick.
@@ -289,6 +379,21 @@ impl Navigation {
             barometer: self.barometer_watch.is_alive(self.time_us, PATIENCE_US)
                 && self.barometer_trust.is_deserved(),
             gps: self.gps_watch.is_alive(self.time_us, FIX_PATIENCE_US) && self.gps_trust.is_deserved(),
+            vision: self.aiding.vision.is_some()
+                && self.vision_watch.is_alive(self.time_us, VISION_PATIENCE_US)
+                && self.vision_trust.is_deserved(),
         }
     }
+}
+
+/// What is used of a fix, if anything.
+fn used(fix: &GpsFix, gps: GpsUse) -> Option<GpsFix> {
+    let unless_used = |is_used: bool, accuracy: f64, unknown: f64| if is_used { accuracy } else { unknown };
+    (gps.position || gps.height || gps.velocity).then(|| GpsFix {
+        horizontal_accuracy_m: unless_used(gps.position, fix.horizontal_accuracy_m, UNKNOWN_M),
+        vertical_accuracy_m: unless_used(gps.height, fix.vertical_accuracy_m, UNKNOWN_M),
+        velocity_accuracy_m_s: unless_used(gps.velocity, fix.velocity_accuracy_m_s, UNKNOWN_M_S),
+        climb_accuracy_m_s: unless_used(gps.velocity, fix.climb_accuracy_m_s, UNKNOWN_M_S),
+        ..*fix
+    })
 }

@@ -27,6 +27,11 @@ impl Release {
         self.held += correction;
     }
 
+    /// Releases all of it at once.
+    pub fn let_go(&mut self) {
+        (self.held, self.pace_per_s) = (Vector3::zeros(), 0.0);
+    }
+
     /// What is held.
     pub fn held(&self) -> Vector3<f64> {
         self.held

@@ -1,8 +1,8 @@
 //! What the estimator believes of its instruments.
 
 use fusion_nav::{
-    AltitudeNoise, Config, Correlation, HeadingNoise, ImuNoise, Initialization, Meters, MetersPerSecond,
-    MetersPerSecond2, Radians, Seconds,
+    AltitudeNoise, Config, Correlation, Gate, Gates, HeadingNoise, ImuNoise, Initialization, Meters,
+    MetersPerSecond, MetersPerSecond2, Radians, Seconds,
 };
 use quadrotor::GRAVITY_M_S2;
 
@@ -26,6 +26,45 @@ const LEVELLING_S: f32 = 15.0;
 /// attitude, rad, offsets of accelerometers, m/s², and of gyroscopes, rad/s. Offsets are more likely than a wrong tilt.
 pub const DOUBTS: [f32; 15] =
     [5.0, 5.0, 3.0, 0.5, 0.5, 0.5, 0.05, 0.05, 0.05, 1.0, 1.0, 1.0, 0.05, 0.05, 0.05];
+
+/// How many standard deviations estimates from outside may be off.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutsideGates {
+    /// Positions.
+    pub position: f64,
+    /// Velocities.
+    pub velocity: f64,
+}
+
+/// The filter's settings while it fuses estimates from outside, whose errors do not last, or as without them.
+pub fn configuration_for(outside: Option<OutsideGates>) -> Config {
+    let usual = configuration();
+    let Some(gates) = outside else { return usual };
+    let threshold = |deviations: f64| (deviations * deviations) as f32;
+    let (position, velocity) = (threshold(gates.position), threshold(gates.velocity));
+    Config {
+        gates: Gates {
+            gnss_position: Gate::new(position).unwrap_or(usual.gates.gnss_position),
+            gnss_height: Gate::new(position).unwrap_or(usual.gates.gnss_height),
+            gnss_velocity: Gate::new(velocity).unwrap_or(usual.gates.gnss_velocity),
+            ..usual.gates
+        },
+        correlation: Correlation {
+            gnss_position: None,
+            gnss_height: None,
+            gnss_velocity: None,
+            ..usual.correlation
+        },
+        ..usual
+    }
+}
+
+/// What an error that lasts, s, makes of the standard deviation of each of the measurements that come every `period_s`: as many of
+/// them as come while it lasts say no more than one.
+pub fn lasting(deviation: f64, lasts_s: f64, period_s: f64) -> f64 {
+    let changed = -libm::expm1(-period_s / lasts_s);
+    deviation * libm::sqrt((2.0 - changed) / changed)
+}
 
 /// The filter's settings.
 pub fn configuration() -> Config {
@@ -83,5 +122,15 @@ mod tests {
         assert!(fusion_nav::Eskf::new(super::configuration()).is_ok());
         // 1.2 Pa near the ground: 10 cm, as the barometer's data sheet says.
         assert!((super::altitude_noise(101_325.0).variance().sqrt() - 0.10).abs() < 0.005);
+        let gates = super::OutsideGates { position: 5.0, velocity: 3.0 };
+        assert!(fusion_nav::Eskf::new(super::configuration_for(Some(gates))).is_ok());
+        assert_eq!(super::configuration_for(None), super::configuration());
+    }
+
+    #[test]
+    fn a_lasting_error_does_not_average_out() {
+        // 600 fixes within a minute: 2τ/dt times the variance of one.
+        assert!((super::lasting(2.0, 60.0, 0.1) - 2.0 * libm::sqrt(1200.0)).abs() < 0.01);
+        assert!((super::lasting(2.0, 0.001, 10.0) - 2.0).abs() < 1e-9);
     }
 }

@@ -92,13 +92,8 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("EKF2_REQ_PDOP", 2.5, 1.5..=5.0, "", "Largest dilution of precision of GPS"),
         ("EKF2_REQ_GPS_H", 10.0, 0.1..=60.0, "s", "Time for which GPS must be good"),
         ("EKF2_GND_EFF_DZ", 4.0, 0.0..=10.0, "m", "Dead zone of the barometer in ground effect"),
-        ("EKF2_EVP_NOISE", 0.1, 0.01..=5.0, "m", "Noise of external positions"),
-        ("EKF2_EVV_NOISE", 0.1, 0.01..=5.0, "m/s", "Noise of external velocities"),
-        ("EKF2_EV_DELAY", 0.0, 0.0..=300.0, "ms", "Delay of external vision"),
     ], whole [
         ("EKF2_EN", 1, 0..=1, "", "Enable the estimator"),
-        ("EKF2_HGT_REF", 1, 0..=3, "", "Reference of height: 0 barometer, 1 GPS, 2 range sensor, 3 vision; here barometer and GPS together"),
-        ("EKF2_EV_CTRL", 0, 0..=15, "", "Use of external vision"),
         ("EKF2_OF_CTRL", 0, 0..=1, "", "Use of optical flow"),
         ("EKF2_RNG_CTRL", 1, 0..=2, "", "Use of a range sensor"),
         ("EKF2_DRAG_CTRL", 0, 0..=1, "", "Use of drag to estimate wind"),

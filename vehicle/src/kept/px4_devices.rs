@@ -31,9 +31,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("BAT1_N_CELLS", 4, 0..=16, "", "Cells of the battery; its voltages are those of the airframe"),
     ]),
     kept!(Px4, "the instruments are calibrated and see what --sensors says", real [
-        ("EKF2_EV_POS_X", 0.0, -10.0..=10.0, "m", "External vision, forwards"),
-        ("EKF2_EV_POS_Y", 0.0, -10.0..=10.0, "m", "External vision, to the right"),
-        ("EKF2_EV_POS_Z", 0.0, -10.0..=10.0, "m", "External vision, downwards"),
     ], whole [
         ("EKF2_AID_MASK", 1, 0..=511, "", "Use of instruments before version 1.14"),
         ("EKF2_HGT_MODE", 1, 0..=3, "", "Reference of height before version 1.14"),

@@ -4,6 +4,7 @@ use super::ConductParameter;
 use super::conduct_parameter::{bitmask, choice, real, switch, whole};
 use super::conduct_parameters::FENCE_ACTIONS;
 use crate::estimation::MagnetometerUse;
+use crate::estimation::aiding::HeightReference;
 use crate::vehicle::{Action, BatteryActions};
 
 /// Parameters that are there unless the vehicle presents itself as ArduPilot.
@@ -12,6 +13,19 @@ pub static PX4_PARAMETERS: &[ConductParameter] = &[
     choice!("NAV_DLL_ACT", GROUND_STATION_ACTIONS, failsafe.ground_station_lost, "Action when the ground station is lost"),
     choice!("COM_LOW_BAT_ACT", BATTERY_POLICIES, failsafe.battery, "Action when the battery is critical; 3 returns, then lands when the battery is almost empty"),
     bitmask!("EKF2_GPS_CTRL", GPS_PARTS, simulated.errors.switches.gps_control, whole_bits, f64::from, "What of GPS is used; without the first bit nothing"),
+    bitmask!("EKF2_EV_CTRL", VISION_PARTS, aiding.px4.control, whole_number, whole_number, "What of external vision is fused (VISION_POSITION_ESTIMATE, ODOMETRY)"),
+    choice!("EKF2_HGT_REF", HEIGHT_REFERENCES, aiding.px4.height_reference, "What heights refer to"),
+    real!("EKF2_EVP_NOISE", None, 0.01..=5.0, aiding.px4.position_noise_m, "m", "Least standard deviation of positions of external vision"),
+    real!("EKF2_EVV_NOISE", None, 0.01..=5.0, aiding.px4.velocity_noise_m_s, "m/s", "Least standard deviation of velocities of external vision"),
+    real!("EKF2_EVA_NOISE", None, 0.05..=5.0, aiding.px4.heading_noise_rad, "rad", "Least standard deviation of headings of external vision"),
+    switch!("EKF2_EV_NOISE_MD", aiding.px4.ignores_told_noise, "Ignore the covariances of external vision"),
+    real!("EKF2_EVP_GATE", None, 1.0..=50.0, aiding.px4.position_gate, "", "How many standard deviations a position of external vision may be off"),
+    real!("EKF2_EVV_GATE", None, 1.0..=50.0, aiding.px4.velocity_gate, "", "How many standard deviations a velocity of external vision may be off"),
+    real!("EKF2_EV_DELAY", None, 0.0..=300.0, aiding.px4.delay_ms, "ms", "Time from an estimate of external vision to its message"),
+    real!("EKF2_EV_POS_X", None, -10.0..=10.0, aiding.px4.place.x, "m", "Place that external vision tells, forwards of the inertial unit"),
+    real!("EKF2_EV_POS_Y", None, -10.0..=10.0, aiding.px4.place.y, "m", "Place that external vision tells, to the right of it"),
+    real!("EKF2_EV_POS_Z", None, -10.0..=10.0, aiding.px4.place.z, "m", "Place that external vision tells, below it"),
+    whole!("EKF2_EV_QMIN", 0..=100, aiding.px4.least_quality, i8, "Least quality of ODOMETRY that is fused, %; 0: any"),
     switch!("EKF2_BARO_CTRL", simulated.errors.switches.barometer_control, "Use of the barometer"),
     choice!("EKF2_MAG_TYPE", MAGNETOMETER_USES, simulated.errors.switches.magnetometer, "Use of the magnetometer"),
     choice!("COM_POSCTL_NAVL", POSITION_ACTIONS, failsafe.position_lost, "Action when the position estimate is lost"),
@@ -37,6 +51,18 @@ const MAGNETOMETER_USES: &[(MagnetometerUse, i32, &str)] = &[
     (MagnetometerUse::None, 5, "None"),
     (MagnetometerUse::AtStart, 6, "At the start; here as automatic"),
 ];
+
+const VISION_PARTS: &[&str] = &["Horizontal position", "Vertical position", "Velocity", "Heading"];
+const HEIGHT_REFERENCES: &[(HeightReference, i32, &str)] = &[
+    (HeightReference::Gps, 1, "GPS; here with the barometer"),
+    (HeightReference::Barometer, 0, "Barometer; here as GPS"),
+    (HeightReference::Range, 2, "Range sensor; here as GPS"),
+    (HeightReference::Vision, 3, "External vision"),
+];
+
+fn whole_number(bits: u32) -> u32 {
+    bits
+}
 
 fn whole_bits(value: f64) -> u32 {
     value as u32

@@ -12,6 +12,7 @@ use super::mode_parameters::{ARDUPILOT_MODE_PARAMETERS, PX4_MODE_PARAMETERS};
 use super::px4_parameters::PX4_PARAMETERS;
 use super::radio_parameters::radio_parameters;
 use super::simulation_parameters::{PX4_WIND_PARAMETERS, SIMULATION_PARAMETERS, WIND_PARAMETERS};
+use super::source_parameters::SOURCE_PARAMETERS;
 use super::stream_rate_parameters::STREAM_RATE_PARAMETERS;
 use super::suggestion::suggestion;
 use super::surroundings_parameters::{ARDUPILOT_SURROUNDINGS, PX4_SURROUNDINGS};
@@ -233,6 +234,7 @@ impl ParameterTable {
 fn of_conduct(identity: Identity) -> impl Iterator<Item = Entry> {
     let ardupilot = identity.is_ardupilot();
     let simulated = if ardupilot { SIMULATION_PARAMETERS } else { &[] };
+    let sources = if ardupilot { SOURCE_PARAMETERS } else { &[] };
     let rates = if ardupilot { STREAM_RATE_PARAMETERS } else { &[] };
     let own_wind = if ardupilot { &[] } else { PX4_WIND_PARAMETERS };
     let (own, of_modes, around) = if ardupilot {
@@ -247,6 +249,7 @@ fn of_conduct(identity: Identity) -> impl Iterator<Item = Entry> {
         .chain(radio_parameters(ardupilot))
         .chain(around)
         .chain(simulated)
+        .chain(sources)
         .chain(equipment_parameters().filter(move |_| ardupilot))
         .chain(rates.iter().flatten())
         .map(|parameter| (parameter, false))

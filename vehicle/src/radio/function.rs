@@ -59,6 +59,8 @@ pub enum Function {
     Parachute,
     /// Lets Loiter stay above the target that is seen.
     PrecisionLoiter,
+    /// Chooses the set of sources that the estimator uses.
+    SourceSet,
 }
 
 /// Numbers that there are.
@@ -111,6 +113,7 @@ const FUNCTIONS: &[(u32, Function)] = &[
     (73, Function::Mode(11)),
     (75, Function::SurfaceTracking),
     (81, Function::Disarming),
+    (90, Function::SourceSet),
     (99, Function::Mode(27)),
     (153, Function::Arming),
     (154, Function::Arming),

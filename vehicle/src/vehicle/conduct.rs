@@ -21,6 +21,7 @@ use super::throw::ThrowSettings;
 use super::trail::TrailSettings;
 use super::weathervane::WeathervaneSettings;
 use crate::equipment::EquipmentSettings;
+use crate::estimation::aiding::AidingSettings;
 use crate::kept::KeptValues;
 use crate::radio::RadioSettings;
 
@@ -148,6 +149,9 @@ pub struct Conduct {
     /// Landings at a target that is seen.
     #[serde(default)]
     pub precision: PrecisionSettings,
+    /// What the estimator fuses.
+    #[serde(default)]
+    pub aiding: AidingSettings,
 }
 
 /// Records of before the first mode could be chosen begin in Loiter.
@@ -244,6 +248,7 @@ impl Conduct {
             takeoff_check: TakeoffCheckSettings::default(),
             equipment: EquipmentSettings::default(),
             precision: PrecisionSettings::default(),
+            aiding: AidingSettings::default(),
         }
     }
 }

@@ -7,7 +7,9 @@ use quadrotor::{GRAVITY_M_S2, Outputs, RigidBody};
 use super::arming_obstacle::{ArmingObstacle, ArmingSubject as Subject};
 use super::closed_loop::ClosedLoop;
 use super::motion::wrapped;
+use crate::estimation::aiding::Aiding;
 use crate::estimation::gps::GpsFix;
+use crate::estimation::vision::VisionReading;
 use crate::estimation::{
     Estimate, IdealSensors, InstrumentHealth, Navigation, Readings, SensorErrors, TrueMotion, Validity,
 };
@@ -53,12 +55,13 @@ impl Perception {
         frame: &LocalFrame,
         faults: &Faults,
         errors: &SensorErrors,
+        aiding: &Aiding,
         stands: bool,
     ) {
         self.truth = closed_loop.outputs();
         match &mut self.navigation {
             Some(navigation) => {
-                navigation.step(&TrueMotion::of(&self.truth), frame, faults, errors, stands);
+                navigation.step(&TrueMotion::of(&self.truth), frame, faults, errors, aiding, stands);
                 let slid_m = navigation.estimate().slid_m;
                 (self.slid_m, self.slid_before_m) = (slid_m - self.slid_before_m, slid_m);
             }
@@ -71,6 +74,29 @@ impl Perception {
     pub fn receive_fix(&mut self, fix: GpsFix) {
         if let Some(navigation) = &mut self.navigation {
             navigation.receive_fix(fix);
+        }
+    }
+
+    /// An estimate of the motion comes from outside.
+    pub fn receive_vision(&mut self, reading: VisionReading) {
+        if let Some(navigation) = &mut self.navigation {
+            navigation.receive_vision(reading);
+        }
+    }
+
+    /// What is missing that tells the place or the velocity, if nothing does.
+    fn lacks_aid(&self) -> Option<&'static str> {
+        let health = self.health();
+        let aiding = self.navigation.as_ref().map_or_else(Aiding::default, |navigation| *navigation.aiding());
+        let sees = aiding.vision.is_some_and(|vision| vision.uses.aids());
+        if aiding.gps.aids() && health.gps || sees && health.vision {
+            None
+        } else if sees {
+            Some("no vision estimates")
+        } else if aiding.gps.aids() {
+            Some("no GPS fix")
+        } else {
+            Some("no source of position (EK3_SRC1_POSXY)")
         }
     }
 
@@ -145,12 +171,15 @@ impl Perception {
         let (place, height) = (needs == Needs::Place, needs >= Needs::Height);
         let (health, validity) = (self.health(), self.validity());
         let aligned = self.navigation.as_ref().is_none_or(|navigation| navigation.estimator().is_aligned());
+        let lacks_aid = self.lacks_aid();
+        let has_compass =
+            health.magnetometer || self.navigation.as_ref().is_some_and(Navigation::has_vision_heading);
         let checks = [
             (health.gyroscope, Subject::Gyroscope, "gyroscope failed"),
             (health.accelerometer, Subject::Accelerometer, "accelerometer failed"),
-            (health.magnetometer, Subject::Magnetometer, "magnetometer failed"),
+            (has_compass, Subject::Magnetometer, "magnetometer failed"),
             (health.barometer, Subject::Barometer, "barometer failed"),
-            (!place || health.gps, Subject::Gps, "no GPS fix"),
+            (!place || lacks_aid.is_none(), Subject::Gps, lacks_aid.unwrap_or_default()),
             (aligned, Subject::Attitude, "attitude not aligned yet"),
             (!aligned || validity.tilt && validity.heading, Subject::Attitude, "no attitude estimate"),
             (

@@ -155,6 +155,7 @@ impl Scene {
                 magnetometer: true,
                 barometer: true,
                 gps: true,
+                vision: false,
             },
             estimates: true,
             fix_velocity_down_m_s: None,

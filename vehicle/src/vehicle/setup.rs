@@ -2,6 +2,7 @@
 
 use super::conduct::Conduct;
 use super::settings::VehicleSettings;
+use crate::estimation::aiding::Aiding;
 use crate::identity::Identity;
 use crate::surroundings::Terrain;
 use crate::world::{Geodetic, LocalFrame, ToldFrame, WindSettings};
@@ -11,8 +12,14 @@ use crate::world::{Geodetic, LocalFrame, ToldFrame, WindSettings};
 pub struct Setup {
     identity: Identity,
     conduct: Conduct,
+    /// Where the simulated world is, and where the vehicle takes it to be.
+    world: LocalFrame,
     frame: LocalFrame,
     told: ToldFrame,
+    /// Whether a client has said where the origin is.
+    origin_is_told: bool,
+    /// The set of sources that the estimator uses, from 0.
+    source_set: usize,
     terrain: Terrain,
     /// What it started with: the wind, and the voltage of the full battery, V.
     wind: WindSettings,
@@ -29,7 +36,19 @@ impl Setup {
         let conduct = settings.conduct;
         let terrain = settings.surroundings.terrain.clone();
         let unix_start_us = 0;
-        let mut setup = Self { identity, conduct, frame, told, terrain, wind, full_battery_v, unix_start_us };
+        let mut setup = Self {
+            identity,
+            conduct,
+            world: frame,
+            frame,
+            told,
+            origin_is_told: false,
+            source_set: 0,
+            terrain,
+            wind,
+            full_battery_v,
+            unix_start_us,
+        };
         setup.set_conduct(conduct);
         setup
     }
@@ -53,6 +72,33 @@ impl Setup {
     pub fn set_conduct(&mut self, conduct: Conduct) {
         let simulated = conduct.simulated.since(&self.wind, self.full_battery_v);
         self.conduct = Conduct { simulated, ..conduct };
+    }
+
+    /// What the estimator fuses.
+    pub fn aiding(&self) -> Aiding {
+        self.conduct.aiding.aiding(self.identity, self.source_set)
+    }
+
+    /// Changes the set of sources that the estimator uses, from 0.
+    pub fn use_source_set(&mut self, source_set: usize) {
+        self.source_set = source_set;
+    }
+
+    /// The frame of the simulated world.
+    pub fn world(&self) -> &LocalFrame {
+        &self.world
+    }
+
+    /// The vehicle, which did not know where its local frame is, is told. Its local positions stay the same.
+    pub fn tell_origin(&mut self, origin: Geodetic) {
+        self.frame = LocalFrame::new(origin);
+        self.told = ToldFrame::new(self.frame);
+        self.origin_is_told = true;
+    }
+
+    /// Whether a client has said where the origin is.
+    pub fn origin_is_told(&self) -> bool {
+        self.origin_is_told
     }
 
     /// The local frame.

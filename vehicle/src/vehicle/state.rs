@@ -317,7 +317,8 @@ impl Vehicle {
     fn perceive(&mut self) {
         let (closed_loop, faults) = (&self.closed_loop, self.faults());
         let (stands, errors) = (self.stands(), &self.setup.conduct().simulated.errors);
-        self.perception.step(closed_loop, self.setup.frame(), &faults, errors, stands);
+        let aiding = self.setup.aiding();
+        self.perception.step(closed_loop, self.setup.world(), &faults, errors, &aiding, stands);
         let slid_m = self.perception.slid_m();
         if slid_m != Vector2::zeros() && self.mode().holds_a_felt_place() {
             self.consult(|_, _, proposal| proposal.slide(&slid_m));

@@ -34,6 +34,7 @@ fn present(vehicle: &Vehicle) -> MavSysStatusSensor {
     present.set(MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE, vehicle.has_fence());
     present.set(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY, vehicle.has_proximity());
     present.set(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION, vehicle.has_rangefinder());
+    present.set(MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_VISION_POSITION, vehicle.aiding().vision.is_some());
     present
 }
 
@@ -60,6 +61,7 @@ fn health(vehicle: &Vehicle, present: MavSysStatusSensor) -> MavSysStatusSensor 
         (instruments.magnetometer, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_3D_MAG),
         (instruments.barometer, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_ABSOLUTE_PRESSURE),
         (instruments.gps, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_GPS),
+        (instruments.vision, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_VISION_POSITION),
         (validity.tilt && validity.heading, MavSysStatusSensor::MAV_SYS_STATUS_AHRS),
         (validity.vertical_position, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_Z_ALTITUDE_CONTROL),
         (position, MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL),

@@ -193,11 +193,12 @@ fn a_short_jam_is_flown_through() {
     assert!(knows_place(&mut flier) && flier.mode() == LOITER && drifted_m < 8.0, "{drifted_m} m");
 }
 
-/// The first set of sources is the one that is used; another is not promised.
+/// Each of the three sets of sources can be used; there is no other.
 #[test]
-fn the_estimator_has_one_set_of_sources() {
+fn the_estimator_has_three_sets_of_sources() {
     let mut flier = Flier::new();
-    for (set, result) in [(1.0, MavResult::MAV_RESULT_ACCEPTED), (2.0, MavResult::MAV_RESULT_DENIED)] {
+    let (accepted, denied) = (MavResult::MAV_RESULT_ACCEPTED, MavResult::MAV_RESULT_DENIED);
+    for (set, result) in [(2.0, accepted), (3.0, accepted), (1.0, accepted), (4.0, denied), (0.5, denied)] {
         let parameters = [set, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         assert_eq!(flier.command(MavCmd::MAV_CMD_SET_EKF_SOURCE_SET, parameters), result as u8, "{set}");
     }

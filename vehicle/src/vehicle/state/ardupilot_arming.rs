@@ -4,6 +4,7 @@ use super::super::arming_obstacle::{ArmingObstacle, ArmingSubject as Subject};
 use super::super::situation::Situation;
 use super::Vehicle;
 use crate::kept::KeptValues;
+use crate::mode::Needs;
 use crate::plan::{PlanKind, command, is_above_ground};
 use crate::radio::{RadioFailure, RadioLossAction};
 
@@ -26,6 +27,7 @@ impl Vehicle {
         let radio = radio(&situation).map(|text| ArmingObstacle::from(text.to_owned()));
         let values = bad_values(&situation.conduct.kept).map(ArmingObstacle::from);
         let terrain = self.terrain_obstacle().map(|text| ArmingObstacle::new(Subject::Mission, text));
+        let sources = self.source_obstacle().map(ArmingObstacle::from);
         let boot = self.machines.boot_fault.obstacle().map(|text| ArmingObstacle::from(text.to_owned()));
         boot.into_iter()
             .chain(battery)
@@ -34,7 +36,17 @@ impl Vehicle {
             .chain(terrain)
             .chain(radio)
             .chain(values)
+            .chain(sources)
             .collect()
+    }
+
+    /// Sources of the estimator that there are not, or that tell no place on the map.
+    fn source_obstacle(&self) -> Option<String> {
+        if self.conduct().aiding.ardupilot.lack_vision() {
+            return Some("EK3 sources require VisualOdom (VISO_TYPE)".to_owned());
+        }
+        let needs_origin = self.aiding().vision.is_some() && self.mode().needs() == Needs::Place;
+        (needs_origin && !self.knows_origin()).then(|| "no origin: send SET_GPS_GLOBAL_ORIGIN".to_owned())
     }
 
     /// A mission above the ground, which ArduPilot knows from its terrain data or from a rangefinder, where neither is to be used.

@@ -203,6 +203,14 @@ impl Vehicle {
                 self.machines.precision.let_loiter(position == Position::High);
                 Ok(())
             }
+            (Function::SourceSet, position) => {
+                self.use_source_set(match position {
+                    Position::Low => 0,
+                    Position::Middle => 1,
+                    Position::High => 2,
+                });
+                Ok(())
+            }
             (Function::Parachute, position) => {
                 self.switch_parachute(position);
                 Ok(())

@@ -24,6 +24,20 @@ impl Vehicle {
         self.take_plan(kind, items, true)
     }
 
+    /// Looks at all plans again: their places on the map are elsewhere in the local frame now.
+    pub(super) fn plan_again(&mut self) {
+        for kind in PlanKind::ALL {
+            let items = self.plans().get(kind).items().to_vec();
+            if items.is_empty() {
+                continue;
+            }
+            if let Err(fault) = self.amend_plan(kind, items) {
+                let (name, reason) = (kind.name(), fault.located(self.identity()));
+                self.decided.say(Severity::Warning, format!("{name} does not fit the origin: {reason}"));
+            }
+        }
+    }
+
     fn take_plan(&mut self, kind: PlanKind, items: Vec<MissionItem>, amended: bool) -> Result<(), PlanFault> {
         let site = self.site();
         check::plan(kind, &items, &site)?;

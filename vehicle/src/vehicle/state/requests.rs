@@ -44,6 +44,7 @@ impl Vehicle {
     }
 
     /// Moves the origin of the local frame in which clients count. Where the vehicle is and where it flies stay the same.
+    /// A vehicle that flies by vision without GPS learns where on the map it is.
     ///
     /// # Errors
     /// [`Refusal`]: it is no place, or too far away.
@@ -52,6 +53,11 @@ impl Vehicle {
             let Geodetic { latitude_deg, longitude_deg, .. } = origin;
             let place = format!("latitude {latitude_deg}, longitude {longitude_deg}");
             return Err(Refusal::denied(format!("Origin refused: {place} is not a valid place")));
+        }
+        if self.can_be_told_origin() {
+            self.setup.tell_origin(origin);
+            self.plan_again();
+            return Ok(());
         }
         let distance_m = self.frame().to_local_m(&origin).norm();
         if distance_m > FARTHEST_M {
@@ -75,6 +81,10 @@ impl Vehicle {
         }
         if conduct.simulated.errors.switches.gps_comes_by_message() && self.navigation().is_none() {
             return Err(ChangeError::IdealReceiver);
+        }
+        let aiding = conduct.aiding.aiding(self.identity(), 0);
+        if aiding.vision.is_some() && conduct.aiding != self.conduct().aiding && self.navigation().is_none() {
+            return Err(ChangeError::IdealVision);
         }
         let charge_v = conduct.simulated.battery_v.filter(|volts| before.battery_v != Some(*volts));
         if charge_v.is_some() && kept.airframe.battery.sag {

@@ -7,7 +7,9 @@ use super::super::precision_landing::{PrecisionLanding, Sighting};
 use super::super::remote_id::RemoteId;
 use super::super::traffic_watch::{Encounter, TrafficWatch};
 use super::Vehicle;
+use crate::estimation::aiding::Aiding;
 use crate::estimation::gps::GpsFix;
+use crate::estimation::vision::{VisionReading, VisionRefusal};
 use crate::surroundings::{Aircraft, RangeScan, Reading};
 
 impl Vehicle {
@@ -73,6 +75,49 @@ impl Vehicle {
             self.perception.receive_fix(fix);
         }
         taken
+    }
+
+    /// Takes an estimate of its motion from outside, if it is used.
+    ///
+    /// # Errors
+    /// [`VisionRefusal`]: why nothing comes of it.
+    pub fn receive_vision(&mut self, reading: VisionReading) -> Result<(), VisionRefusal> {
+        if self.navigation().is_none() {
+            return Err(VisionRefusal::IdealSensors);
+        }
+        let settings = self.aiding().vision.ok_or(VisionRefusal::NotUsed)?;
+        if !settings.uses.wants(&reading) {
+            return Err(VisionRefusal::NotUsed);
+        }
+        if !reading.is_possible() {
+            return Err(VisionRefusal::Impossible);
+        }
+        if reading.quality < settings.least_quality {
+            return Err(VisionRefusal::Poor { quality: reading.quality, least: settings.least_quality });
+        }
+        self.perception.receive_vision(reading);
+        Ok(())
+    }
+
+    /// What its estimator fuses.
+    pub fn aiding(&self) -> Aiding {
+        self.setup.aiding()
+    }
+
+    /// Lets its estimator use another set of sources, from 0.
+    pub fn use_source_set(&mut self, set: usize) {
+        self.setup.use_source_set(set);
+    }
+
+    /// Whether it flies by vision, without GPS, so that only a client can tell where on the map it is.
+    pub fn can_be_told_origin(&self) -> bool {
+        self.navigation().is_some() && self.aiding().vision.is_some() && !self.instrument_health().gps
+    }
+
+    /// Whether it knows where on the map its local frame is: a receiver has told it, or a client.
+    pub fn knows_origin(&self) -> bool {
+        let told = self.setup.origin_is_told();
+        told || self.navigation().is_none_or(|navigation| navigation.readings().gps.is_some())
     }
 
     /// Who flies around.
