@@ -40,7 +40,7 @@ fn others(present: Value, description: &Description) -> Vec<Value> {
 }
 
 /// In hover each parameter of the table is set by its message, and put back. Only the system id waits for the next start, as the
-/// metadata tell, and vision waits for sensors that have errors.
+/// metadata tell.
 #[test]
 fn every_parameter_changes_in_flight_unless_it_needs_a_restart() {
     let mut bench = Bench::hovering(Identity::Px4);
@@ -58,8 +58,7 @@ fn every_parameter_changes_in_flight_unless_it_needs_a_restart() {
             bench.send(set(entry.id, value));
             present(&bench, index) == value
         });
-        let changes = !description.read_only && entry.id != "EKF2_EV_CTRL";
-        assert_eq!(accepted, changes, "{}: {:?}", entry.id, bench.texts());
+        assert_eq!(accepted, !description.read_only, "{}: {:?}", entry.id, bench.texts());
         if !accepted {
             refused.push((entry.id, bench.texts().swap_remove(0)));
         }
@@ -71,10 +70,6 @@ fn every_parameter_changes_in_flight_unless_it_needs_a_restart() {
         assert!(apart.norm() < 0.1, "{}: {apart:?}", entry.id);
     }
     let told = [
-        (
-            "EKF2_EV_CTRL",
-            "EKF2_EV_CTRL: ideal sensors know the place and fuse no vision; start with --sensors realistic",
-        ),
         ("MAV_SYS_ID", "MAV_SYS_ID is read-only: restart with --system-id"),
         ("MPC_THR_HOVER", "MPC_THR_HOVER is calculated from mass and rotors (read-only); set those instead"),
     ];

@@ -28,9 +28,6 @@ pub enum ChangeError {
     /// With ideal sensors the vehicle knows its place.
     #[error("ideal sensors need no fixes by GPS_INPUT; start with --sensors realistic")]
     IdealReceiver,
-    /// With ideal sensors nothing is to be fused.
-    #[error("ideal sensors know the place and fuse no vision; start with --sensors realistic")]
-    IdealVision,
     /// The battery is part of the plant, which does not jump.
     #[error("the rotors follow the battery's voltage (FRAME_BATT_SAG): its charge cannot be set in flight")]
     BatteryOfPlant,

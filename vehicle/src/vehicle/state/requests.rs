@@ -82,10 +82,6 @@ impl Vehicle {
         if conduct.simulated.errors.switches.gps_comes_by_message() && self.navigation().is_none() {
             return Err(ChangeError::IdealReceiver);
         }
-        let aiding = conduct.aiding.aiding(self.identity(), 0);
-        if aiding.vision.is_some() && conduct.aiding != self.conduct().aiding && self.navigation().is_none() {
-            return Err(ChangeError::IdealVision);
-        }
         let charge_v = conduct.simulated.battery_v.filter(|volts| before.battery_v != Some(*volts));
         if charge_v.is_some() && kept.airframe.battery.sag {
             return Err(ChangeError::BatteryOfPlant);
