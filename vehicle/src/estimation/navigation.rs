@@ -182,20 +182,45 @@ impl Navigation {
         self.choose(aiding);
         let errors = Some(errors).filter(|errors| **errors != SensorErrors::default());
         self.read_inertial(motion, faults, errors);
+        self.read_barometer(motion, frame, faults, errors);
+        self.read_magnetometer(motion, frame, faults, errors);
+        self.read_gps(motion, frame, faults, errors);
+        self.fuse_vision(stands);
+        if stands && time_us.is_multiple_of(STANDS_PERIOD_US) {
+            self.estimator.stands(time_us);
+        }
+    }
+
+    fn read_barometer(
+        &mut self,
+        motion: &TrueMotion,
+        frame: &LocalFrame,
+        faults: &Faults,
+        errors: Option<&SensorErrors>,
+    ) {
         let mut altitude_m = frame.origin().altitude_m - motion.position_m.z;
-        if let Some(errors) = errors.filter(|_| time_us.is_multiple_of(barometer::PERIOD_US)) {
+        if let Some(errors) = errors.filter(|_| motion.time_us.is_multiple_of(barometer::PERIOD_US)) {
             altitude_m += self.errors.height_m(errors, barometer::PERIOD_US as f64 / 1e6);
         }
-        let reading = self.barometer.sample(time_us, altitude_m);
+        let reading = self.barometer.sample(motion.time_us, altitude_m);
         let fault = faults.sensor(Sensor::Barometer);
         if let Some(reading) = reading.and_then(|reading| self.defects.barometer.tell(reading, fault)) {
-            self.barometer_watch.update(time_us, [reading.pressure_pa, 0.0, 0.0]);
+            self.barometer_watch.update(motion.time_us, [reading.pressure_pa, 0.0, 0.0]);
             let fitted = self.estimator.barometer(&reading);
             self.barometer_trust.update(fitted, barometer::PERIOD_US);
             self.readings.barometer = Some(reading);
         }
+    }
+
+    fn read_magnetometer(
+        &mut self,
+        motion: &TrueMotion,
+        frame: &LocalFrame,
+        faults: &Faults,
+        errors: Option<&SensorErrors>,
+    ) {
         let field = || earth_field_ned(&frame.to_geodetic(&motion.position_m));
-        let reading = self.magnetometer.sample(time_us, &motion.attitude, field);
+        let reading = self.magnetometer.sample(motion.time_us, &motion.attitude, field);
         let reading = reading.map(|reading| match errors {
             Some(errors) => {
                 MagnetometerReading { field_gauss: self.errors.field(errors, reading.field_gauss), ..reading }
@@ -204,14 +229,23 @@ impl Navigation {
         });
         let fault = faults.sensor(Sensor::Magnetometer);
         if let Some(reading) = reading.and_then(|reading| self.defects.magnetometer.tell(reading, fault)) {
-            self.magnetometer_watch.update(time_us, reading.field_gauss.into());
-            let is_fused = !aiding.vision.is_some_and(|vision| self.vision.has_heading(time_us, &vision));
+            self.magnetometer_watch.update(motion.time_us, reading.field_gauss.into());
+            let is_fused = !self.has_vision_heading();
             if is_fused || !self.estimator.is_aligned() {
                 let fitted = self.estimator.magnetometer(&reading);
                 self.magnetometer_trust.update(fitted, magnetometer::PERIOD_US);
             }
             self.readings.magnetometer = Some(reading);
         }
+    }
+
+    fn read_gps(
+        &mut self,
+        motion: &TrueMotion,
+        frame: &LocalFrame,
+        faults: &Faults,
+        errors: Option<&SensorErrors>,
+    ) {
         let fault = faults.sensor(Sensor::Gps);
         let rate_hz = match errors {
             Some(errors) => {
@@ -237,16 +271,12 @@ impl Navigation {
         if let Some(fix) = received.or(simulated).and_then(|fix| self.defects.gps.tell(fix, fault)) {
             let starts_again = errors.is_none_or(|errors| errors.switches.starts_again);
             let fitted = fix.is_accurate()
-                && used(&fix, aiding.gps).is_none_or(|fix| self.estimator.gps(&fix, starts_again));
+                && used(&fix, self.aiding.gps).is_none_or(|fix| self.estimator.gps(&fix, starts_again));
             self.gps_trust.update(fitted, period_us);
             // Who measures better than a receiver may say the same again.
             let news = if by_message { [fix.time_us as f64, 0.0, 0.0] } else { fix.position_m.into() };
-            self.gps_watch.update(time_us, news);
+            self.gps_watch.update(motion.time_us, news);
             self.readings.gps = Some(fix);
-        }
-        self.fuse_vision(stands);
-        if stands && time_us.is_multiple_of(STANDS_PERIOD_US) {
-            self.estimator.stands(time_us);
         }
     }
 
