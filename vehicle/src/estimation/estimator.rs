@@ -27,7 +27,7 @@ const VELOCITY_RELEASE_M_S2: f64 = 0.5;
 /// With less than this left, m, a leap of the position has been told.
 const TOLD_M: f64 = 0.1;
 /// The antenna sits on the inertial unit.
-const NO_LEVER: [f32; 3] = [0.0; 3];
+const NO_LEVER: [f64; 3] = [0.0; 3];
 
 /// The estimator.
 #[derive(Clone, Debug)]
@@ -140,32 +140,15 @@ impl Estimator {
         }
         let fix = &self.seen(fix);
         let before = self.filter.state();
-        let time = Timestamp::from_micros(fix.time_us);
-        let (horizontal, vertical) = (fix.horizontal_accuracy_m as f32, fix.vertical_accuracy_m as f32);
-        let (speed, climb) = (fix.velocity_accuracy_m_s as f32, fix.climb_accuracy_m_s as f32);
-        let antenna = Position::from_array(NO_LEVER);
-        let place = self.filter.fuse_gnss_position(
-            time,
-            Position::from_array(single(&fix.position_m)),
-            PositionNoise::horizontal_vertical(horizontal, vertical),
-            antenna,
-        );
-        let motion = self.filter.fuse_gnss_velocity(
-            time,
-            Velocity::from_array(single(&fix.velocity_m_s)),
-            VelocityNoise::horizontal_vertical(speed, climb),
-            antenna,
-        );
-        self.resets += u32::from(place.is_reset()) + u32::from(motion.is_reset());
-        self.leaps |= place.is_reset();
+        let place_noise = [fix.horizontal_accuracy_m, fix.vertical_accuracy_m];
+        let motion_noise = [fix.velocity_accuracy_m_s, fix.climb_accuracy_m_s];
+        let place = self.filter_position(fix.time_us, &fix.position_m, place_noise, NO_LEVER);
+        let motion = self.filter_velocity(fix.time_us, &fix.velocity_m_s, motion_noise, NO_LEVER);
         self.hold_back(&before);
-        if fitted(place.horizontal) && fix.tells_place() || fitted(motion) && fix.tells_velocity() {
-            self.note_aid();
-        }
-        if self.lockout.update(fix, fitted(motion)) && starts_again {
+        if self.lockout.update(fix, motion) && starts_again {
             self.start_again(fix);
         }
-        fitted(place.horizontal) && fitted(place.height) && fitted(motion)
+        place == [true; 2] && motion
     }
 
     /// Takes a pressure in, and tells whether it fitted.

@@ -63,6 +63,13 @@ pub struct InstrumentHealth {
     pub vision: bool,
 }
 
+impl InstrumentHealth {
+    /// Whether the vertical motion is felt, and something corrects the height.
+    pub fn supports_height(&self) -> bool {
+        self.accelerometer && (self.gps || self.barometer || self.vision)
+    }
+}
+
 impl Readings {
     /// What instruments without errors would show.
     pub fn exact(motion: &TrueMotion, frame: &LocalFrame) -> Self {

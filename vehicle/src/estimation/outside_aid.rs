@@ -68,20 +68,8 @@ impl Estimator {
         place_m: [f64; 3],
     ) -> [bool; 2] {
         let before = self.filter.state();
-        let [horizontal_m, vertical_m] = deviations_m;
-        let outcome = self.filter.fuse_gnss_position(
-            Timestamp::from_micros(time_us),
-            Position::from_array(single(position_m)),
-            PositionNoise::horizontal_vertical(horizontal_m as f32, vertical_m as f32),
-            Position::from_array(place_m.map(|axis| axis as f32)),
-        );
-        self.resets += u32::from(outcome.is_reset());
-        self.leaps |= outcome.is_reset();
+        let fits = self.filter_position(time_us, position_m, deviations_m, place_m);
         self.hold_back(&before);
-        let fits = [fitted(outcome.horizontal), fitted(outcome.height)];
-        if fits[0] && horizontal_m < UNKNOWN_M {
-            self.note_aid();
-        }
         fits
     }
 
@@ -94,7 +82,42 @@ impl Estimator {
         place_m: [f64; 3],
     ) -> bool {
         let before = self.filter.state();
-        let [horizontal_m_s, vertical_m_s] = deviations_m_s;
+        let fits = self.filter_velocity(time_us, velocity_m_s, deviations_m_s, place_m);
+        self.hold_back(&before);
+        fits
+    }
+
+    /// Hands a position to the filter, as [`fuse_position`](Self::fuse_position) takes it, and tells which half fitted.
+    pub(super) fn filter_position(
+        &mut self,
+        time_us: u64,
+        position_m: &Vector3<f64>,
+        [horizontal_m, vertical_m]: [f64; 2],
+        place_m: [f64; 3],
+    ) -> [bool; 2] {
+        let outcome = self.filter.fuse_gnss_position(
+            Timestamp::from_micros(time_us),
+            Position::from_array(single(position_m)),
+            PositionNoise::horizontal_vertical(horizontal_m as f32, vertical_m as f32),
+            Position::from_array(place_m.map(|axis| axis as f32)),
+        );
+        self.resets += u32::from(outcome.is_reset());
+        self.leaps |= outcome.is_reset();
+        let fits = [fitted(outcome.horizontal), fitted(outcome.height)];
+        if fits[0] && horizontal_m < UNKNOWN_M {
+            self.note_aid();
+        }
+        fits
+    }
+
+    /// Hands a velocity to the filter, as [`fuse_velocity`](Self::fuse_velocity) takes it, and tells whether it fitted.
+    pub(super) fn filter_velocity(
+        &mut self,
+        time_us: u64,
+        velocity_m_s: &Vector3<f64>,
+        [horizontal_m_s, vertical_m_s]: [f64; 2],
+        place_m: [f64; 3],
+    ) -> bool {
         let outcome = self.filter.fuse_gnss_velocity(
             Timestamp::from_micros(time_us),
             Velocity::from_array(single(velocity_m_s)),
@@ -102,7 +125,6 @@ impl Estimator {
             Position::from_array(place_m.map(|axis| axis as f32)),
         );
         self.resets += u32::from(outcome.is_reset());
-        self.hold_back(&before);
         if fitted(outcome) && horizontal_m_s < UNKNOWN_M_S {
             self.note_aid();
         }
@@ -172,7 +194,7 @@ impl Estimator {
     }
 
     /// Turns the estimate about the vertical axis by an angle, rad, at once, and the velocity with it if the frame has turned.
-    pub fn turn_by(&mut self, angle_rad: f64, deviation_rad: f64, with_frame: bool) -> bool {
+    pub fn turn_by(&mut self, angle_rad: f64, with_frame: bool) -> bool {
         let state = self.filter.state();
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle_rad);
         let [w, x, y, z] = {
@@ -192,7 +214,7 @@ impl Estimator {
             tracing::warn!(%error, "the estimator does not turn");
             return false;
         }
-        tracing::debug!(angle_rad, deviation_rad, "the estimate turns");
+        tracing::debug!(angle_rad, "the estimate turns");
         self.resets += 1;
         true
     }

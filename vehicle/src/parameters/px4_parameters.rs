@@ -1,5 +1,7 @@
 //! What only PX4 has, or what ArduPilot has with other numbers.
 
+use core::convert::identity;
+
 use super::ConductParameter;
 use super::conduct_parameter::{bitmask, choice, real, switch, whole};
 use super::conduct_parameters::FENCE_ACTIONS;
@@ -13,7 +15,7 @@ pub static PX4_PARAMETERS: &[ConductParameter] = &[
     choice!("NAV_DLL_ACT", GROUND_STATION_ACTIONS, failsafe.ground_station_lost, "Action when the ground station is lost"),
     choice!("COM_LOW_BAT_ACT", BATTERY_POLICIES, failsafe.battery, "Action when the battery is critical; 3 returns, then lands when the battery is almost empty"),
     bitmask!("EKF2_GPS_CTRL", GPS_PARTS, simulated.errors.switches.gps_control, whole_bits, f64::from, "What of GPS is used; without the first bit nothing"),
-    bitmask!("EKF2_EV_CTRL", VISION_PARTS, aiding.px4.control, whole_number, whole_number, "What of external vision is fused (VISION_POSITION_ESTIMATE, ODOMETRY)"),
+    bitmask!("EKF2_EV_CTRL", VISION_PARTS, aiding.px4.control, identity, identity, "What of external vision is fused (VISION_POSITION_ESTIMATE, ODOMETRY)"),
     choice!("EKF2_HGT_REF", HEIGHT_REFERENCES, aiding.px4.height_reference, "What heights refer to"),
     real!("EKF2_EVP_NOISE", None, 0.01..=5.0, aiding.px4.position_noise_m, "m", "Least standard deviation of positions of external vision"),
     real!("EKF2_EVV_NOISE", None, 0.01..=5.0, aiding.px4.velocity_noise_m_s, "m/s", "Least standard deviation of velocities of external vision"),
@@ -59,10 +61,6 @@ const HEIGHT_REFERENCES: &[(HeightReference, i32, &str)] = &[
     (HeightReference::Range, 2, "Range sensor; here as GPS"),
     (HeightReference::Vision, 3, "External vision"),
 ];
-
-fn whole_number(bits: u32) -> u32 {
-    bits
-}
 
 fn whole_bits(value: f64) -> u32 {
     value as u32

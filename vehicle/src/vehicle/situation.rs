@@ -218,9 +218,7 @@ impl<'a> Situation<'a> {
         let estimated = known.tilt && known.horizontal_position && known.vertical_position;
         // Ideal sensors know the rest by themselves.
         let ideal = !self.estimates;
-        estimated
-            && (ideal
-                || works.gyroscope && works.accelerometer && (works.gps || works.barometer || works.vision))
+        estimated && (ideal || works.gyroscope && works.supports_height())
     }
 
     /// Whether it knows enough of its motion to hold a height.
@@ -228,9 +226,7 @@ impl<'a> Situation<'a> {
         let (known, works) = (self.validity, self.health);
         let estimated = known.tilt && known.vertical_position;
         let ideal = !self.estimates;
-        estimated
-            && (ideal
-                || works.gyroscope && works.accelerometer && (works.gps || works.barometer || works.vision))
+        estimated && (ideal || works.gyroscope && works.supports_height())
     }
 
     /// Whether it knows enough of its motion for a mode.
@@ -244,9 +240,7 @@ impl<'a> Situation<'a> {
 
     /// How fast it sinks, m/s: by the estimate, or where nothing supports that any more by the receiver.
     pub fn sink_rate_m_s(&self) -> f64 {
-        let works = self.health;
-        let supported = works.accelerometer && (works.gps || works.barometer || works.vision);
-        let by_fix = self.fix_velocity_down_m_s.filter(|_| !supported);
+        let by_fix = self.fix_velocity_down_m_s.filter(|_| !self.health.supports_height());
         by_fix.unwrap_or(self.outputs.velocity_m_s.z)
     }
 

@@ -28,10 +28,9 @@ pub fn esc_info(vehicle: &Vehicle) -> MavMessage {
 
 /// ESC_STATUS: speed, voltage and current of each.
 pub fn esc_status(vehicle: &Vehicle) -> MavMessage {
-    let outputs = vehicle.outputs();
     MavMessage::ESC_STATUS(ESC_STATUS_DATA {
-        time_usec: outputs.time_us,
-        rpm: outputs.rotor_speed_rad_s.map(|speed| (speed * RPM_PER_RAD_S).round() as i32),
+        time_usec: vehicle.outputs().time_us,
+        rpm: speeds_rpm(vehicle).map(|speed| speed as i32),
         voltage: [vehicle.battery().voltage_v() as f32; 4],
         current: currents_a(vehicle).map(|current| current as f32),
         index: 0,
@@ -45,7 +44,7 @@ pub fn esc_telemetry(vehicle: &Vehicle) -> MavMessage {
         voltage: [(battery.voltage_v() * 1e2).round() as u16; 4],
         current: currents_a(vehicle).map(|current| (current * 1e2).round() as u16),
         totalcurrent: [(battery.drawn_ah() * 1e3 / 4.0).round() as u16; 4],
-        rpm: vehicle.outputs().rotor_speed_rad_s.map(|speed| (speed * RPM_PER_RAD_S).round() as u16),
+        rpm: speeds_rpm(vehicle).map(|speed| speed as u16),
         count: [reports(vehicle); 4],
         // Unknown.
         temperature: [0; 4],
@@ -55,6 +54,11 @@ pub fn esc_telemetry(vehicle: &Vehicle) -> MavMessage {
 /// How many reports have come from each, wrapping.
 fn reports(vehicle: &Vehicle) -> u16 {
     (vehicle.outputs().time_us / PERIOD_US) as u16
+}
+
+/// The speed of each rotor, whole rounds a minute.
+fn speeds_rpm(vehicle: &Vehicle) -> [f64; 4] {
+    vehicle.outputs().rotor_speed_rad_s.map(|speed| (speed * RPM_PER_RAD_S).round())
 }
 
 /// The current of each rotor, A: its electric power over the battery's voltage.

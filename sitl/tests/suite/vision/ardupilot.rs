@@ -2,26 +2,19 @@
 
 #![allow(deprecated)] // Clients still use what the dialect calls deprecated.
 
-use super::camera::{Camera, obstacles, off_m, watch};
+use super::camera::{Camera, never, obstacles, off_m, watch};
+use crate::common::Bench;
 use crate::common::failsafe_bench::set;
 use crate::common::requests::local_target;
-use crate::common::{Bench, settings};
 use mavlink::dialects::ardupilotmega::*;
 use nalgebra::Vector3;
 use vehicle::Mode;
-use vehicle::estimation::{SensorModel, SensorSettings};
 use vehicle::identity::Identity;
 
 const ACCEPTED: u8 = 0;
 
 fn started(parameters: &[(&str, f64)]) -> Bench {
-    let mut start = settings(Identity::ArduPilot);
-    start.sensors = SensorSettings { model: SensorModel::Realistic, seed: 1 };
-    let mut bench = Bench::of(&start);
-    for (name, value) in parameters {
-        set(&mut bench, name, *value);
-    }
-    bench
+    super::camera::started(Identity::ArduPilot, parameters)
 }
 
 /// All by vision, without a receiver.
@@ -35,10 +28,6 @@ const ALONE: [(&str, f64); 8] = [
     ("EK3_SRC1_YAW", 6.0),
     ("EK3_SRC_OPTIONS", 0.0),
 ];
-
-fn never(_: &Bench) -> bool {
-    false
-}
 
 fn origin(latitude: i32, longitude: i32) -> MavMessage {
     MavMessage::SET_GPS_GLOBAL_ORIGIN(SET_GPS_GLOBAL_ORIGIN_DATA {

@@ -1,8 +1,11 @@
 //! A motion capture system: it sees the true motion from a place of its own, and sends what it sees.
 
-use crate::common::Bench;
+use crate::common::failsafe_bench::set;
+use crate::common::{Bench, settings};
 use mavlink::dialects::ardupilotmega::*;
 use nalgebra::{UnitQuaternion, Vector3};
+use vehicle::estimation::{SensorModel, SensorSettings};
+use vehicle::identity::Identity;
 
 /// Where it counts from, and what it gets wrong.
 #[derive(Clone, Copy)]
@@ -94,6 +97,22 @@ impl Camera {
             ..VISION_SPEED_ESTIMATE_DATA::default()
         })
     }
+}
+
+/// A vehicle of an identity with instruments, and parameters.
+pub fn started(identity: Identity, parameters: &[(&str, f64)]) -> Bench {
+    let mut start = settings(identity);
+    start.sensors = SensorSettings { model: SensorModel::Realistic, seed: 1 };
+    let mut bench = Bench::of(&start);
+    for (name, value) in parameters {
+        set(&mut bench, name, *value);
+    }
+    bench
+}
+
+/// Until a time is over.
+pub fn never(_: &Bench) -> bool {
+    false
 }
 
 fn single(vector: Vector3<f64>) -> [f32; 3] {

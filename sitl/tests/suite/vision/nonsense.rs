@@ -1,13 +1,11 @@
 //! Numbers without meaning: nothing breaks, and the estimate stays one.
 
-use super::camera::{Camera, off_m, watch};
-use crate::common::failsafe_bench::set;
-use crate::common::{Bench, settings};
+use super::camera::{Camera, never, off_m, started, watch};
+use crate::common::Bench;
 use autopilot::codec::Frame;
 use mavlink::Message as _;
 use mavlink::dialects::ardupilotmega::MavMessage;
 use proptest::prelude::*;
-use vehicle::estimation::{SensorModel, SensorSettings};
 use vehicle::identity::Identity;
 
 /// All messages with estimates, and the lengths of their payloads.
@@ -25,9 +23,7 @@ fn framed(id: u32, payload: &[u8]) -> Frame {
 
 /// One that fuses all there is, and has aligned.
 fn fused(ardupilot: bool) -> Bench {
-    let mut start = settings(if ardupilot { Identity::ArduPilot } else { Identity::Px4 });
-    start.sensors = SensorSettings { model: SensorModel::Realistic, seed: 1 };
-    let mut bench = Bench::of(&start);
+    let identity = if ardupilot { Identity::ArduPilot } else { Identity::Px4 };
     let parameters: &[(&str, f64)] = if ardupilot {
         &[
             ("VISO_TYPE", 1.0),
@@ -40,10 +36,8 @@ fn fused(ardupilot: bool) -> Bench {
     } else {
         &[("EKF2_EV_CTRL", 15.0), ("EKF2_GPS_CTRL", 0.0), ("EKF2_HGT_REF", 3.0)]
     };
-    for (name, value) in parameters {
-        set(&mut bench, name, *value);
-    }
-    watch(&mut bench, 3.0, |bench| vec![Camera::ALIGNED.estimate(bench)], |_| false);
+    let mut bench = started(identity, parameters);
+    watch(&mut bench, 3.0, |bench| vec![Camera::ALIGNED.estimate(bench)], never);
     bench
 }
 
@@ -76,7 +70,7 @@ proptest! {
         prop_assert!(covariance.to_rows().iter().flatten().all(|entry| entry.is_finite()));
         // After a silence it begins anew.
         bench.fly(1.5);
-        watch(&mut bench, 12.0, |bench| vec![Camera::ALIGNED.estimate(bench)], |_| false);
+        watch(&mut bench, 12.0, |bench| vec![Camera::ALIGNED.estimate(bench)], never);
         let truth_m = bench.autopilot.vehicle().truth().position_m;
         prop_assert!(off_m(&bench, truth_m) < 0.5, "{} m off", off_m(&bench, truth_m));
     }

@@ -1,24 +1,15 @@
 //! By PX4's parameters.
 
-use super::camera::{Camera, obstacles, off_m, watch};
-use crate::common::failsafe_bench::set;
+use super::camera::{Camera, never, obstacles, off_m, watch};
+use crate::common::Bench;
 use crate::common::requests::local_target;
-use crate::common::{Bench, settings};
 use mavlink::dialects::ardupilotmega::*;
 use nalgebra::Vector3;
 use vehicle::Mode;
-use vehicle::estimation::{SensorModel, SensorSettings};
 use vehicle::identity::Identity;
 
-/// With instruments, and parameters.
 fn started(parameters: &[(&str, f64)]) -> Bench {
-    let mut start = settings(Identity::Px4);
-    start.sensors = SensorSettings { model: SensorModel::Realistic, seed: 1 };
-    let mut bench = Bench::of(&start);
-    for (name, value) in parameters {
-        set(&mut bench, name, *value);
-    }
-    bench
+    super::camera::started(Identity::Px4, parameters)
 }
 
 /// Without GPS and compass.
@@ -27,10 +18,6 @@ const ALONE: [(&str, f64); 4] =
 
 fn estimate(camera: Camera) -> impl Fn(&Bench) -> Vec<MavMessage> {
     move |bench| vec![camera.estimate(bench)]
-}
-
-fn never(_: &Bench) -> bool {
-    false
 }
 
 /// Takes off, and flies to a place as the camera counts, NED, m.

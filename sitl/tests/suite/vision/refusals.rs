@@ -1,17 +1,10 @@
 //! What nothing comes of is said once, with the reason and the remedy.
 
-use super::camera::Camera;
+use super::camera::{Camera, started};
+use crate::common::Bench;
 use crate::common::failsafe_bench::set;
-use crate::common::{Bench, settings};
 use mavlink::dialects::ardupilotmega::*;
-use vehicle::estimation::{SensorModel, SensorSettings};
 use vehicle::identity::Identity;
-
-fn with_instruments(identity: Identity) -> Bench {
-    let mut start = settings(identity);
-    start.sensors = SensorSettings { model: SensorModel::Realistic, seed: 1 };
-    Bench::of(&start)
-}
 
 /// How often words are said while a message is sent three times.
 fn said(bench: &mut Bench, message: &MavMessage, words: &str) -> usize {
@@ -28,7 +21,7 @@ fn said(bench: &mut Bench, message: &MavMessage, words: &str) -> usize {
 
 #[test]
 fn each_reason_is_said_once() {
-    let mut px4 = with_instruments(Identity::Px4);
+    let mut px4 = started(Identity::Px4, &[]);
     let (estimate, speed) = (Camera::ALIGNED.estimate(&px4), Camera::ALIGNED.speed(&px4));
     assert_eq!(said(&mut px4, &estimate, "VISION_POSITION_ESTIMATE is ignored: set EKF2_EV_CTRL"), 1);
     assert_eq!(said(&mut px4, &speed, "VISION_SPEED_ESTIMATE is ignored: as by PX4"), 1);
@@ -50,7 +43,7 @@ fn each_reason_is_said_once() {
     let far = VISION_POSITION_ESTIMATE_DATA { x: 1e9, ..VISION_POSITION_ESTIMATE_DATA::default() };
     assert_eq!(said(&mut px4, &MavMessage::VISION_POSITION_ESTIMATE(far), "at most 100 km"), 1);
 
-    let mut ardupilot = with_instruments(Identity::ArduPilot);
+    let mut ardupilot = started(Identity::ArduPilot, &[]);
     assert_eq!(said(&mut ardupilot, &estimate, "set VISO_TYPE to 1"), 1);
     set(&mut ardupilot, "VISO_TYPE", 1.0);
     assert_eq!(said(&mut ardupilot, &speed, "set EK3_SRC1_POSXY, VELXY"), 1);

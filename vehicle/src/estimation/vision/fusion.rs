@@ -13,6 +13,7 @@ use super::super::outside_aid::Place;
 use super::motion_history::MotionHistory;
 use super::reading::{Measured, VelocityFrame, VisionReading, deviation};
 use super::settings::VisionSettings;
+use crate::wrapped;
 
 /// After a silence of this long, µs, the next reading begins anew.
 const SILENCE_US: u64 = 1_000_000;
@@ -67,6 +68,13 @@ pub struct VisionFusion {
     heading_us: Option<u64>,
 }
 
+impl VisionTerms {
+    /// When a reading of now was taken, µs.
+    fn taken_us(&self) -> u64 {
+        self.now_us.saturating_sub(self.settings.delay_us)
+    }
+}
+
 impl Succession {
     fn step(&mut self, now_us: u64, resets: u8) -> Step {
         let before = self.0.replace((now_us, resets));
@@ -98,24 +106,23 @@ impl VisionFusion {
     /// Fuses a reading; tells whether what was fused fitted.
     pub fn fuse(&mut self, estimator: &mut Estimator, reading: &VisionReading, terms: &VisionTerms) -> bool {
         let settings = &terms.settings;
-        if reading.quality < settings.least_quality || !reading.is_possible() {
+        if settings.check(reading).is_err() {
             return false;
         }
-        let taken_us = terms.now_us.saturating_sub(settings.delay_us);
-        if self.history.nearest(taken_us).is_none() {
+        if self.history.nearest(terms.taken_us()).is_none() {
             return false;
         }
         let pose = (reading.position.is_some() || reading.attitude.is_some())
             .then(|| self.poses.step(terms.now_us, reading.resets));
         let mut fits = true;
         if let (Some(step), Some((attitude, variance))) = (pose, &reading.attitude) {
-            fits &= self.fuse_attitude(estimator, reading, terms, step, taken_us, (attitude, *variance));
+            fits &= self.fuse_attitude(estimator, reading, terms, step, (attitude, *variance));
         }
         if let (Some(step), Some(position)) = (pose, &reading.position) {
-            fits &= self.fuse_position(estimator, reading, terms, step, taken_us, position);
+            fits &= self.fuse_position(estimator, reading, terms, step, position);
         }
         if let Some((frame, velocity)) = &reading.velocity {
-            fits &= self.fuse_velocity(estimator, terms, taken_us, *frame, velocity);
+            fits &= self.fuse_velocity(estimator, terms, *frame, velocity);
         }
         fits
     }
@@ -127,11 +134,10 @@ impl VisionFusion {
         reading: &VisionReading,
         terms: &VisionTerms,
         step: Step,
-        taken_us: u64,
         (attitude, variance): (&UnitQuaternion<f64>, f64),
     ) -> bool {
         let settings = &terms.settings;
-        let Some(moment) = self.history.nearest(taken_us) else { return false };
+        let Some(moment) = self.history.nearest(terms.taken_us()) else { return false };
         let heading_rad = attitude.euler_angles().2;
         let off_rad = wrapped(heading_rad - moment.attitude.euler_angles().2);
         // A frame that points anywhere cannot be GPS's.
@@ -148,13 +154,13 @@ impl VisionFusion {
         let certain_rad = libm::hypot(deviation_rad, estimator.heading_deviation_rad());
         let is_elsewhere = off_rad.abs() > HEADING_GATE * certain_rad;
         if step.begins && is_elsewhere && estimator.is_aligned() {
-            if estimator.turn_by(off_rad, deviation_rad, !reading.points_north) {
+            if estimator.turn_by(off_rad, !reading.points_north) {
                 self.history.move_by(&Vector3::zeros(), off_rad);
                 self.heading_us = Some(terms.now_us);
             }
             return true;
         }
-        let fits = estimator.fuse_heading(taken_us, heading_rad, deviation_rad);
+        let fits = estimator.fuse_heading(terms.taken_us(), heading_rad, deviation_rad);
         if fits {
             self.heading_us = Some(terms.now_us);
         }
@@ -167,14 +173,13 @@ impl VisionFusion {
         reading: &VisionReading,
         terms: &VisionTerms,
         step: Step,
-        taken_us: u64,
         position: &Measured,
     ) -> bool {
         let (settings, uses) = (&terms.settings, &terms.settings.uses);
         if !uses.horizontal && !uses.vertical {
             return true;
         }
-        let (Some(then), now) = (self.history.nearest(taken_us).copied(), estimator.moment()) else {
+        let (Some(then), now) = (self.history.nearest(terms.taken_us()).copied(), estimator.moment()) else {
             return false;
         };
         let value_m = if reading.points_north { position.value } else { self.turned(&position.value) };
@@ -198,7 +203,7 @@ impl VisionFusion {
             horizontal_m = horizontal_m.max(BESIDE_GPS_M);
         }
         if step.begins {
-            let late_s = now.time_us.saturating_sub(taken_us) as f64 / 1e6;
+            let late_s = now.time_us.saturating_sub(terms.taken_us()) as f64 / 1e6;
             let there_m = unit_m + now.velocity_m_s * late_s;
             let moves = [uses.horizontal && !aside, uses.vertical && !above];
             let place = Place {
@@ -215,8 +220,12 @@ impl VisionFusion {
             if uses.horizontal { horizontal_m } else { UNKNOWN_M },
             if uses.vertical { vertical_m } else { UNKNOWN_M },
         ];
-        let fits =
-            estimator.fuse_position(taken_us, &(value_m + self.offset_m), deviations_m, settings.place_m);
+        let fits = estimator.fuse_position(
+            terms.taken_us(),
+            &(value_m + self.offset_m),
+            deviations_m,
+            settings.place_m,
+        );
         (fits[0] || !uses.horizontal) && (fits[1] || !uses.vertical)
     }
 
@@ -224,7 +233,6 @@ impl VisionFusion {
         &self,
         estimator: &mut Estimator,
         terms: &VisionTerms,
-        taken_us: u64,
         frame: VelocityFrame,
         velocity: &Measured,
     ) -> bool {
@@ -232,7 +240,7 @@ impl VisionFusion {
         if !uses.velocity && !uses.climb {
             return true;
         }
-        let Some(then) = self.history.nearest(taken_us) else { return false };
+        let Some(then) = self.history.nearest(terms.taken_us()) else { return false };
         let value_m_s = match frame {
             VelocityFrame::North => velocity.value,
             VelocityFrame::Free => self.turned(&velocity.value),
@@ -247,16 +255,11 @@ impl VisionFusion {
             if uses.velocity { horizontal } else { UNKNOWN_M_S },
             if uses.climb { vertical } else { UNKNOWN_M_S },
         ];
-        estimator.fuse_velocity(taken_us, &value_m_s, deviations_m_s, settings.place_m)
+        estimator.fuse_velocity(terms.taken_us(), &value_m_s, deviations_m_s, settings.place_m)
     }
 
     /// A vector of a frame that points anywhere, NED.
     fn turned(&self, vector: &Vector3<f64>) -> Vector3<f64> {
         UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.turn_rad) * vector
     }
-}
-
-/// An angle, rad, between −π and π.
-fn wrapped(angle_rad: f64) -> f64 {
-    libm::remainder(angle_rad, core::f64::consts::TAU)
 }

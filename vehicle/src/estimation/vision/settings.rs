@@ -1,5 +1,7 @@
 //! How estimates from outside are used.
 
+use super::{VisionReading, VisionRefusal};
+
 /// What of them is fused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct VisionUse {
@@ -44,6 +46,22 @@ pub struct VisionSettings {
     pub least_quality: i8,
 }
 
+impl VisionSettings {
+    /// Whether a reading is good enough.
+    ///
+    /// # Errors
+    /// [`VisionRefusal`]: why it is not.
+    pub fn check(&self, reading: &VisionReading) -> Result<(), VisionRefusal> {
+        if !reading.is_possible() {
+            return Err(VisionRefusal::Impossible);
+        }
+        if reading.quality < self.least_quality {
+            return Err(VisionRefusal::Poor { quality: reading.quality, least: self.least_quality });
+        }
+        Ok(())
+    }
+}
+
 impl VisionUse {
     /// Whether anything is fused.
     pub fn anything(&self) -> bool {
@@ -56,7 +74,7 @@ impl VisionUse {
     }
 
     /// Whether a reading has something that is fused.
-    pub fn wants(&self, reading: &super::VisionReading) -> bool {
+    pub fn wants(&self, reading: &VisionReading) -> bool {
         let place = self.horizontal || self.vertical;
         let motion = self.velocity || self.climb;
         place && reading.position.is_some()

@@ -27,7 +27,7 @@ use crate::foreign::ForeignRole;
 use crate::mode::{Leader, Mode};
 use crate::plan::step::Turn;
 use crate::plan::{ChangeSpeed, Look};
-use crate::world::{FARTHEST_M, Geodetic, wind_drag};
+use crate::world::wind_drag;
 
 /// Takeoffs end between these heights above home, m.
 const TAKEOFF_HEIGHT_M: core::ops::RangeInclusive<f64> = 0.5..=1000.0;
@@ -41,31 +41,6 @@ impl Vehicle {
     /// Tells what time it was at the start, µs since 1970.
     pub fn set_unix_start_us(&mut self, unix_start_us: u64) {
         self.setup.set_unix_start_us(unix_start_us);
-    }
-
-    /// Moves the origin of the local frame in which clients count. Where the vehicle is and where it flies stay the same.
-    /// A vehicle that flies by vision without GPS learns where on the map it is.
-    ///
-    /// # Errors
-    /// [`Refusal`]: it is no place, or too far away.
-    pub fn move_origin(&mut self, origin: Geodetic) -> Result<(), Refusal> {
-        if !origin.is_valid() {
-            let Geodetic { latitude_deg, longitude_deg, .. } = origin;
-            let place = format!("latitude {latitude_deg}, longitude {longitude_deg}");
-            return Err(Refusal::denied(format!("Origin refused: {place} is not a valid place")));
-        }
-        if self.can_be_told_origin() {
-            self.setup.tell_origin(origin);
-            self.plan_again();
-            return Ok(());
-        }
-        let distance_m = self.frame().to_local_m(&origin).norm();
-        if distance_m > FARTHEST_M {
-            let (far, most) = (distance_m / 1000.0, FARTHEST_M / 1000.0);
-            return Err(Refusal::denied(format!("Origin refused: {far:.0} km away; at most {most} km")));
-        }
-        self.setup.move_origin(origin);
-        Ok(())
     }
 
     /// Takes changed parameters over: those of the closed loop, as [`kept_configuration`](Self::kept_configuration) has them,

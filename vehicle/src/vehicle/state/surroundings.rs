@@ -2,6 +2,7 @@
 
 use nalgebra::{Vector2, Vector3};
 
+use super::super::notice::Refusal;
 use super::super::obstacle_watch::{ObstacleWatch, one_direction};
 use super::super::precision_landing::{PrecisionLanding, Sighting};
 use super::super::remote_id::RemoteId;
@@ -11,6 +12,7 @@ use crate::estimation::aiding::Aiding;
 use crate::estimation::gps::GpsFix;
 use crate::estimation::vision::{VisionReading, VisionRefusal};
 use crate::surroundings::{Aircraft, RangeScan, Reading};
+use crate::world::{FARTHEST_M, Geodetic};
 
 impl Vehicle {
     /// What is measured around.
@@ -89,12 +91,7 @@ impl Vehicle {
         if !settings.uses.wants(&reading) {
             return Err(VisionRefusal::NotUsed);
         }
-        if !reading.is_possible() {
-            return Err(VisionRefusal::Impossible);
-        }
-        if reading.quality < settings.least_quality {
-            return Err(VisionRefusal::Poor { quality: reading.quality, least: settings.least_quality });
-        }
+        settings.check(&reading)?;
         self.perception.receive_vision(reading);
         Ok(())
     }
@@ -107,6 +104,31 @@ impl Vehicle {
     /// Lets its estimator use another set of sources, from 0.
     pub fn use_source_set(&mut self, set: usize) {
         self.setup.use_source_set(set);
+    }
+
+    /// Moves the origin of the local frame in which clients count. Where the vehicle is and where it flies stay the same.
+    /// A vehicle that flies by vision without GPS learns where on the map it is.
+    ///
+    /// # Errors
+    /// [`Refusal`]: it is no place, or too far away.
+    pub fn move_origin(&mut self, origin: Geodetic) -> Result<(), Refusal> {
+        if !origin.is_valid() {
+            let Geodetic { latitude_deg, longitude_deg, .. } = origin;
+            let place = format!("latitude {latitude_deg}, longitude {longitude_deg}");
+            return Err(Refusal::denied(format!("Origin refused: {place} is not a valid place")));
+        }
+        if self.can_be_told_origin() {
+            self.setup.tell_origin(origin);
+            self.plan_again();
+            return Ok(());
+        }
+        let distance_m = self.frame().to_local_m(&origin).norm();
+        if distance_m > FARTHEST_M {
+            let (far, most) = (distance_m / 1000.0, FARTHEST_M / 1000.0);
+            return Err(Refusal::denied(format!("Origin refused: {far:.0} km away; at most {most} km")));
+        }
+        self.setup.move_origin(origin);
+        Ok(())
     }
 
     /// Whether it flies by vision, without GPS, so that only a client can tell where on the map it is.
