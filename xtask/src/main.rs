@@ -35,6 +35,7 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
 
+use product::Profile;
 use program::Beside;
 use progress::Progress;
 use release::Release;
@@ -83,6 +84,9 @@ enum Task {
     Image {
         #[command(flatten)]
         platforms: ForPlatforms,
+        /// Compiles the vehicle without optimization, only to see that it flies. Such an image may have any size; it is not for use.
+        #[arg(long)]
+        draft: bool,
     },
     /// Writes bills of materials of what is released to target/assets, as CycloneDX, and checks them against its schema.
     Bills,
@@ -239,9 +243,10 @@ fn run(task: &Task) -> Result<(), Failure> {
             let release = prepared(&workspace, &progress, &platforms.or(&[host]), platforms.install)?;
             assets::make(&workspace, &progress, &release)
         }
-        Task::Image { platforms } => {
+        Task::Image { platforms, draft } => {
             let host = Platform::host().ok_or(Failure::UnknownPlatform)?;
-            image::make(&workspace, &progress, &platforms.or(&[host]), platforms.install)
+            let profile = if *draft { Profile::Draft } else { Profile::Release };
+            image::make(&workspace, &progress, &platforms.or(&[host]), platforms.install, profile)
         }
         Task::Bills => bills::write(&workspace, &progress).map(|_| ()),
         Task::Workflows => workflows::check(&workspace, &progress),

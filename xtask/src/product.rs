@@ -52,6 +52,8 @@ pub enum Profile {
     Release,
     /// To be tried and thrown away.
     Trial,
+    /// Slow, to see that it runs at all.
+    Draft,
 }
 
 impl Profile {
@@ -60,6 +62,7 @@ impl Profile {
         match self {
             Self::Release => "release",
             Self::Trial => "trial",
+            Self::Draft => "draft",
         }
     }
 }

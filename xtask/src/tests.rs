@@ -26,16 +26,21 @@ fn rust_blocks(workspace: &Workspace, document: &str) -> Vec<Vec<String>> {
 fn rust_code_of_readme_and_book_is_a_documentation_test() {
     let workspace = Workspace::find().expect("cargo knows the workspace");
     let (front, fleet) = ("quadrotor/README.md", "quadrotor/src/fleet.rs");
-    for (document, sources) in
-        [("README.md", &[front][..]), ("book/src/library/simulate.md", &[front, fleet])]
-    {
+    let recording = "microcontroller/recording/src/lib.rs";
+    let documents = [
+        ("README.md", &[front][..]),
+        ("book/src/library/simulate.md", &[front, fleet]),
+        ("book/src/library/microcontroller.md", &[recording, recording]),
+    ];
+    for (document, sources) in documents {
         let blocks = rust_blocks(&workspace, document);
         assert_eq!(blocks.len(), sources.len(), "{document}");
         for (code, source) in blocks.iter().zip(sources) {
             let text = files::read_text(&workspace.root().join(source)).expect("is there");
-            let documented: Vec<&str> = text.lines().map(|line| line.trim_start_matches("/// ")).collect();
+            let of_item = |line: &'_ str| line.trim_start_matches("/// ").trim_start_matches("//! ").to_owned();
+            let documented: Vec<String> = text.lines().map(of_item).collect();
             for line in code {
-                assert!(documented.contains(&line.as_str()), "{document}: not in {source}: {line}");
+                assert!(documented.contains(line), "{document}: not in {source}: {line}");
             }
         }
     }

@@ -4,6 +4,27 @@
 //! ```text
 //! recording   position, altitude, roll and pitch, yaw: [controller, moments × moment]
 //! ```
+//!
+//! The way of a controller from the one to the other:
+//!
+//! ```
+//! # use lmpc::{Controller, ControllerState, Sample, StabilizedMpc, unknowns};
+//! # fn convert(controller: &StabilizedMpc<12, 2, 2, { unknowns(2, 8) }>) -> Result<Vec<u8>, postcard::Error> {
+//! // On the computer: any controller of lmpc.
+//! let single = controller.to_precision::<f32>();
+//! let bytes = postcard::to_allocvec(&single)?;
+//! # Ok(bytes)
+//! # }
+//! # static BYTES: &[u8] = &[];
+//! # fn fly(sample: Sample<'_, 12, 2, 2, f32>) -> Result<(), postcard::Error> {
+//! // On the device, once. Its memory holds the controller from then on.
+//! let controller: StabilizedMpc<12, 2, 2, { unknowns(2, 8) }, f32> = postcard::from_bytes(BYTES)?;
+//! let mut state = ControllerState::<12, 2, { unknowns(2, 8) }, f32>::at_rest().keeping::<{ unknowns(2, 8) }>();
+//! // At each sample:
+//! let step = controller.step(&mut state, &sample);
+//! # Ok(())
+//! # }
+//! ```
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -124,6 +124,12 @@ class Client:
         return self.wait("PARAM_VALUE", lambda value: value.param_id == name)
 
 
+def patiently(*arguments) -> tuple:
+    """Arguments of a vehicle that waits for set-points as long as other work on the machine may keep a client from sending. PX4's
+    offboard mode is left after a second, of which a fast vehicle has several in each of the client's; ArduPilot's guided mode stays."""
+    return arguments if "ardupilot" in arguments else ("--set", "COM_OF_LOSS_T=30", *arguments)
+
+
 def near(goal, within: float = 0.1, slow: float = 0.1):
     """Whether a LOCAL_POSITION_NED rests at a place."""
     return lambda p: math.dist((p.x, p.y, p.z), goal) < within and math.hypot(p.vx, p.vy, p.vz) < slow

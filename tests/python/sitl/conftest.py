@@ -14,6 +14,7 @@ import pytest  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+from browser import Page, browser, needs_browser  # noqa: E402
 from client import Client  # noqa: E402
 from mavsdk_vehicle import flown_by_mavsdk  # noqa: E402
 
@@ -100,3 +101,24 @@ def fly(start):
     """Starts vehicles that MAVSDK is connected to."""
     with flown_by_mavsdk(start) as make:
         yield make
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    needs_browser()
+    with browser() as running:
+        yield running
+
+
+@pytest.fixture
+def look(chromium):
+    """Opens pages; closes them at the end, and fails for errors in their consoles."""
+    pages = []
+
+    def make(url: str, **options) -> Page:
+        pages.append(Page(chromium, url, **options))
+        return pages[-1]
+
+    yield make
+    for page in pages:
+        page.close()

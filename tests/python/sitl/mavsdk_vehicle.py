@@ -4,13 +4,8 @@ import socket
 import time
 from contextlib import contextmanager
 
+from client import patiently
 from mavsdk import ComponentType, Configuration, Mavsdk
-
-
-def patiently(*arguments) -> tuple:
-    """Arguments of a vehicle that waits for set-points as long as other work on the machine may keep a client from sending. PX4's
-    offboard mode is left after a second, of which a fast vehicle has several in each of the client's; ArduPilot's guided mode stays."""
-    return arguments if "ardupilot" in arguments else ("--set", "COM_OF_LOSS_T=30", *arguments)
 
 
 def eventually(what, condition, timeout: float = 20.0):

@@ -13,7 +13,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from pyulog import ULog
 from pyulog.px4 import PX4ULog
 
-from client import near
+from client import near, patiently
 from mavsdk_vehicle import eventually
 from test_program import run
 
@@ -45,7 +45,7 @@ def logs(folder):
 
 def test_flights_read_by_pyulog(start, connect, program, tmp_path):
     folder, record = tmp_path / "logs", tmp_path / "record"
-    vehicle = start("--log-dir", str(folder), "--record", str(record), "--speed", "5", "--wind", "3,90")
+    vehicle = start(*patiently("--log-dir", str(folder), "--record", str(record), "--speed", "5", "--wind", "3,90"))
     client = connect(vehicle)
     client.take_off()
     client.go(lambda: client.position((3, 2, -4)))

@@ -12,7 +12,7 @@ import pytest
 from pymavlink import mavutil
 
 import records
-from client import near
+from client import near, patiently
 
 
 def run(program, *arguments, environment=None, timeout=60):
@@ -281,7 +281,7 @@ def test_the_same_flight_at_every_speed(start, connect, tmp_path):
 
 def test_record_and_replay(start, connect, program, tmp_path):
     record, log = tmp_path / "flight.record", tmp_path / "flight.tlog"
-    vehicle = start("--record", str(record), "--tlog", str(log), "--wind", "3,90", "--gusts", "0.5", "--speed", "3")
+    vehicle = start(*patiently("--record", str(record), "--tlog", str(log), "--wind", "3,90", "--gusts", "0.5", "--speed", "3"))
     client = connect(vehicle)
     client.take_off()
     client.go(lambda: client.position((3, 2, -4)))

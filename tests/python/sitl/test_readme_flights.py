@@ -9,7 +9,8 @@ import sys
 import documents
 import pytest
 
-from mavsdk_vehicle import free_port, patiently
+from client import patiently
+from mavsdk_vehicle import free_port
 
 FLIGHTS = [block for block in documents.of("python") if re.search(r"^(from|import) (pymavlink|mavsdk)\b", block.text, re.MULTILINE)]
 

@@ -7,7 +7,7 @@ from mavsdk.plugins.action import Action
 from mavsdk.plugins.telemetry import Telemetry
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from client import near
+from client import near, patiently
 from mavsdk_vehicle import eventually, free_port
 
 GPS = mavlink.MAV_SYS_STATUS_SENSOR_GPS
@@ -22,7 +22,7 @@ def asked(client, number, name):
 
 
 def test_the_estimate_is_flown_and_told_and_a_lost_gps_with_it(start, connect):
-    client = connect(start("--sensors", "realistic", "--speed", "10", "--set", "COM_DISARM_PRFLT=-1", "--set", "SYS_FAILURE_EN=1"))
+    client = connect(start(*patiently("--sensors", "realistic", "--speed", "10", "--set", "COM_DISARM_PRFLT=-1", "--set", "SYS_FAILURE_EN=1")))
     client.wait("SYS_STATUS", lambda status: status.onboard_control_sensors_health & PREARM)
     client.take_off()
     goal = (6.0, -4.0, -5.0)

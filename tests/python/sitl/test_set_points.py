@@ -5,7 +5,7 @@ import math
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from client import PX4_HOLD, PX4_OFFBOARD, PX4_POSITION, near
+from client import PX4_HOLD, PX4_OFFBOARD, PX4_POSITION, near, patiently
 
 POSITION = 0b110111111000
 VELOCITY = 0b110111000111
@@ -13,7 +13,7 @@ VELOCITY = 0b110111000111
 
 @pytest.fixture
 def flying(start, connect):
-    client = connect(start("--speed", "2", "--home", "-33.9,151.2,20,0", links=("udpin:0,onboard",)))
+    client = connect(start(*patiently("--speed", "2", "--home", "-33.9,151.2,20,0"), links=("udpin:0,onboard",)))
     client.take_off()
     return client
 

@@ -7,7 +7,7 @@ import struct
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from client import PX4_OFFBOARD
+from client import PX4_OFFBOARD, patiently
 
 # Of a degree of latitude, m.
 DEGREE = 111_195.0
@@ -72,7 +72,7 @@ def fly(client, camera, goal, mode, take_off):
 
 @pytest.mark.parametrize("send", [position_estimate, odometry])
 def test_px4_flies_by_motion_capture_alone(start, connect, send):
-    client = connect(start("--sensors", "realistic", "--speed", "2"))
+    client = connect(start(*patiently("--sensors", "realistic", "--speed", "2")))
     for name, value in {"EKF2_GPS_CTRL": 0, "EKF2_EV_CTRL": 11, "EKF2_HGT_REF": 3, "EKF2_MAG_TYPE": 5}.items():
         # PX4's integers travel bytewise.
         client.set_parameter(name, struct.unpack("<f", struct.pack("<i", value))[0], mavlink.MAV_PARAM_TYPE_INT32)

@@ -40,7 +40,7 @@ function rows(state, news) {
     ["Solver", known(worst, `${SOLVER[worst]}${Number.isFinite(iterations) ? `, ${iterations} iteration${iterations === 1 ? "" : "s"}` : ""}`), worst > 1],
     ["Battery", known(state.battery, `${(100 * state.battery).toFixed(0)} %, ${state.voltage.toFixed(1)} V`), state.battery < 0.2],
     ["Wind", known(state.wind[0], windText(state.wind)), false],
-    ["Faults", news && (news.faults.join(", ") || "none"), Boolean(news?.faults.length)],
+    ["Faults", news?.faults && (news.faults.join(", ") || "none"), Boolean(news?.faults?.length)],
   ].filter(([, text]) => text);
 }
 

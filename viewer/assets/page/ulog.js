@@ -4,6 +4,8 @@ import { unknown } from "./frame.js";
 
 const MAGIC = [0x55, 0x4c, 0x6f, 0x67, 0x01, 0x12, 0x35];
 const HEADER = 16;
+/** Levels of logged lines are digits. */
+const ZERO = "0".charCodeAt(0);
 const TYPES = {
   int8_t: ["getInt8", 1], uint8_t: ["getUint8", 1], bool: ["getUint8", 1], char: ["getUint8", 1], int16_t: ["getInt16", 2],
   uint16_t: ["getUint16", 2], int32_t: ["getInt32", 4], uint32_t: ["getUint32", 4], float: ["getFloat32", 4],
@@ -14,6 +16,11 @@ const WANTED = [
   "vehicle_local_position", "vehicle_local_position_groundtruth", "vehicle_attitude", "vehicle_attitude_groundtruth",
   "vehicle_local_position_setpoint", "vehicle_status", "vehicle_land_detected", "battery_status", "wind", "lmpc_status",
 ];
+/** PX4's numbers of modes (VehicleStatus.msg), and its names of them. */
+const MODES = new Map([
+  [0, "Manual"], [1, "Altitude"], [2, "Position"], [3, "Mission"], [4, "Hold"], [5, "Return"], [6, "Position Slow"], [10, "Acro"], [12, "Descend"],
+  [13, "Termination"], [14, "Offboard"], [15, "Stabilized"], [17, "Takeoff"], [18, "Land"], [19, "Follow Me"], [20, "Precision Land"], [21, "Orbit"],
+]);
 const LAWS = ["altitude", "position", "attitude"];
 /** Between samples that are no farther apart than this, µs, what is logged moves evenly. */
 const SOON_US = 0.5e6;
@@ -59,9 +66,9 @@ function reader(view, { fields }) {
   };
 }
 
-/** Rows of the wanted topics by name: functions from field to value. */
-function topics(data) {
-  const [formats, subscribed, rows] = [new Map(), new Map(), new Map(WANTED.map((name) => [name, []]))];
+/** Rows of the wanted topics by name, functions from field to value; and the lines that were logged. */
+function read(data) {
+  const [formats, subscribed, rows, texts] = [new Map(), new Map(), new Map(WANTED.map((name) => [name, []])), []];
   for (const [kind, view] of messages(data)) {
     if (kind === "F") {
       const [name, line] = textOf(view).split(":");
@@ -75,9 +82,22 @@ function topics(data) {
     } else if (kind === "D") {
       const topic = subscribed.get(view.getUint16(0, true));
       if (topic) topic.rows.push(reader(view, topic.layout));
+    } else if (kind === "L" && view.byteLength > 9) {
+      const [severity, time] = [view.getUint8(0) - ZERO, Number(view.getBigUint64(1, true)) / 1e6];
+      texts.push({ number: texts.length + 1, time_s: time, vehicle: 1, severity, text: textOf(view, 9) });
     }
   }
-  return rows;
+  return { rows, texts };
+}
+
+/** From when on which mode was flown, as news of the vehicle. */
+function modesOf(status) {
+  const news = [];
+  for (const row of status) {
+    const mode = MODES.get(row("nav_state")) ?? `mode ${row("nav_state")}`;
+    if (news.at(-1)?.mode !== mode) news.push({ id: 1, time_s: row("timestamp") / 1e6, mode });
+  }
+  return news;
 }
 
 /** Goes along rows in time: the latest one at each instant. */
@@ -103,11 +123,11 @@ class Latest {
   }
 }
 
-/** Times, s, and states of one vehicle. Throws with what is wrong. */
+/** Times, s, states, modes and logged lines of one vehicle. Throws with what is wrong. */
 export function readUlog(buffer) {
   const data = new DataView(buffer);
   if (data.byteLength < HEADER || MAGIC.some((byte, index) => data.getUint8(index) !== byte)) throw new Error("The file is not a ULog.");
-  const rows = topics(data);
+  const { rows, texts } = read(data);
   const truth = (name) => (rows.get(`${name}_groundtruth`).length > 0 ? rows.get(`${name}_groundtruth`) : rows.get(name));
   const latest = Object.fromEntries([
     ["position", truth("vehicle_local_position")], ["attitude", truth("vehicle_attitude")],
@@ -130,7 +150,7 @@ export function readUlog(buffer) {
       ...tracked(latest.setpoint.between(time, ["x", "y", "z"])),
     });
   }
-  return { times, states: new Map([[1, states]]) };
+  return { times, states: new Map([[1, states]]), news: modesOf(rows.get("vehicle_status")), texts };
 }
 
 function tracked(setpoint) {
