@@ -43,7 +43,8 @@ pub fn make(
         if Some(platform) == Platform::host() {
             let mut flight = Command::new(&program);
             flight.args(["--link", "udpin:127.0.0.1:0", "--speed", "max", "--duration", "20"]);
-            progress.timed("Flying what is in the image", || process::output(&mut flight, "flying the image"))?;
+            progress
+                .timed("Flying what is in the image", || process::output(&mut flight, "flying the image"))?;
         }
         let bytes = files::read(&image)?.len();
         println!("{} ({:.1} MB)", workspace.shown(&image), bytes as f64 / 1e6);

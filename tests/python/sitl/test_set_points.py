@@ -54,6 +54,7 @@ def test_velocity_in_both_frames(flying):
     body = lambda: flying.position((0, 0, 0), VELOCITY, mavlink.MAV_FRAME_BODY_NED, velocity=(1.5, 0, 0))  # noqa: E731
     flying.stream(body, lambda p: math.dist((p.vx, p.vy, p.vz), (0, 1.5, 0)) < 0.06)
     # Silence is a failsafe: it holds.
+    flying.set_parameter("COM_OF_LOSS_T", 1.0)
     flying.wait("HEARTBEAT", lambda beat: beat.custom_mode == (4 << 16 | 3 << 24), 5)
     flying.wait("LOCAL_POSITION_NED", lambda p: math.hypot(p.vx, p.vy, p.vz) < 0.05)
 
