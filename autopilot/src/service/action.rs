@@ -271,9 +271,18 @@ fn set_home(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     vehicle.set_home(position_m, yaw_rad)
 }
 
+/// MAV_DO_REPOSITION_FLAGS_CHANGE_MODE: ArduPilot leaves other modes than its guided ones for no repositioning without it.
+const CHANGE_MODE: u32 = 1;
+
 /// NaN keeps what it stands for; nothing but NaN is a pause.
 fn reposition(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let vehicle = &mut context.vehicle;
+    let changes_mode = command.whole(2).is_some_and(|flags| flags & CHANGE_MODE != 0);
+    if vehicle.identity().is_ardupilot() && !changes_mode && !vehicle.is_guided() {
+        return Err(Refusal::denied(
+            "Reposition rejected: not in Guided mode, and the flag CHANGE_MODE is not set",
+        ));
+    }
     // Without a place it has no frame.
     let nowhere = command.x.is_nan() && command.y.is_nan() && !command.z.is_finite();
     let frame = if nowhere { plan::frame::GLOBAL } else { global_frame(command)? };

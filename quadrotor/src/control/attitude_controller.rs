@@ -185,7 +185,7 @@ impl AttitudeController {
         let spin = Spin {
             inertia_kg_m2,
             body_rate_rad_s: seen.body_rate_rad_s,
-            rate_error_rad_s: seen.body_rate_rad_s - in_body * reference.rate_rad_s,
+            rate_error_rad_s: seen.body_rate_rad_s - leaning_and_turning(&in_body, &reference.rate_rad_s),
             torque_n_m: seen.torque_n_m,
             delay_s: lag_s + configuration.controllers.attitude.sample_time_s() / 2.0,
         };
@@ -194,7 +194,7 @@ impl AttitudeController {
         let beside = spin.beside(most_n_m);
         let most_rad_s2 = [most_n_m / inertia_kg_m2.xy().max(), yaw_n_m / inertia_kg_m2.z];
         let disturbance_rad_s2 = holdable(&seen.disturbance_rad_s2, most_rad_s2[1]);
-        let reference_acceleration = in_body * reference.acceleration_rad_s2;
+        let reference_acceleration = leaning_and_turning(&in_body, &reference.acceleration_rad_s2);
         let reached = (seen.torque_n_m - beside.made_n_m).component_div(&inertia_kg_m2);
         let error_rad =
             going_on(&attitude_error(&reference.attitude, &seen.attitude), &spin.rate_error_rad_s);
@@ -213,7 +213,7 @@ impl AttitudeController {
             input_reference: if design.attitude.is_incremental() {
                 Vector3::zeros()
             } else {
-                reference_acceleration + in_body * reference.jerk_rad_s3 * lag_s
+                reference_acceleration + leaning_and_turning(&in_body, &reference.jerk_rad_s3) * lag_s
             },
             disturbance: disturbance_rad_s2,
         };
@@ -313,6 +313,13 @@ impl AttitudeController {
             self.turn.apply(&turn);
         }
     }
+}
+
+/// Motion of a reference, in its own axes, as the body should have it: `in_body` turns into the axes of the body. A turn about the
+/// thrust axis is one about the body's own, however far that leans off: it does not move the thrust, and would push a vehicle sideways that
+/// leans to catch up with its reference.
+fn leaning_and_turning(in_body: &UnitQuaternion<f64>, motion: &Vector3<f64>) -> Vector3<f64> {
+    in_body * Vector3::new(motion.x, motion.y, 0.0) + Vector3::z() * motion.z
 }
 
 /// A disturbance, rad/s², whose part about yaw is no more than a share of what the rotors can do about it, `turn_rad_s2`.

@@ -54,15 +54,21 @@ impl Observation {
         configuration: &Configuration,
         asked_rad_s2: &Vector3<f64>,
     ) -> HorizontalMotion {
-        // a = −R e₃ F/m, and as the body turns ȧ = −R (ω × e₃) F/m, ä = −R (ω̇ × e₃) F/m
+        // a = −R e₃ F/m, and as the body turns ȧ = −R (ω × e₃) F/m, ä = −R (ω̇ × e₃ + ω × (ω × e₃)) F/m
         let rotation = self.body.rotation();
         let turned = |by: &Vector3<f64>| (rotation * by.cross(&Vector3::z()) * -self.lift_m_s2).xy();
+        let rate = &self.body.body_rate_rad_s;
+        let going_on = rotation * rate.cross(&rate.cross(&Vector3::z())) * -self.lift_m_s2;
+        // ω̇ = J⁻¹ (τ − ω × Jω)
+        let inertia = configuration.believed_inertia_kg_m2();
+        let gyroscopic_n_m = rate.cross(&inertia.component_mul(rate));
+        let turning = (self.rotor_torque_n_m - gyroscopic_n_m).component_div(&inertia);
         HorizontalMotion {
             position_m: self.body.position_m.xy(),
             velocity_m_s: self.body.velocity_m_s.xy(),
             acceleration_m_s2: (rotation * Vector3::z() * -self.lift_m_s2).xy(),
-            jerk_m_s3: turned(&self.body.body_rate_rad_s),
-            snap_m_s4: turned(&self.rotor_torque_n_m.component_div(&configuration.believed_inertia_kg_m2())),
+            jerk_m_s3: turned(rate),
+            snap_m_s4: turned(&turning) + going_on.xy(),
             asked_snap_m_s4: turned(asked_rad_s2),
             disturbance_m_s2: self.disturbance_m_s2.xy(),
             disturbance_m_s4: turned(&self.disturbance_rad_s2),
@@ -139,8 +145,15 @@ mod tests {
             let by = angular * (STEP_S * STEP_S / 2.0);
             (turned(by) - now.xy()) * 2.0 / (STEP_S * STEP_S)
         };
-        let made = wrench.torque_n_m.component_div(&Vector3::from(configuration.airframe.inertia_kg_m2));
-        assert!((motion.snap_m_s4 - snap(made)).norm() < 1e-4, "{} {}", motion.snap_m_s4, snap(made));
+        // Euler's equations: the jerk a moment later and earlier, with the rate and the attitude of then.
+        let inertia = Vector3::from(configuration.airframe.inertia_kg_m2);
+        let turning = (wrench.torque_n_m - rate.cross(&inertia.component_mul(&rate))).component_div(&inertia);
+        let jerk_at = |time_s: f64| {
+            let attitude = attitude * UnitQuaternion::from_scaled_axis(rate * time_s);
+            (attitude * (rate + turning * time_s).cross(&Vector3::z()) * -lift_m_s2).xy()
+        };
+        let made = (jerk_at(STEP_S) - jerk_at(-STEP_S)) / (2.0 * STEP_S);
+        assert!((motion.snap_m_s4 - made).norm() < 1e-4, "{} {made}", motion.snap_m_s4);
         assert!((motion.asked_snap_m_s4 - snap(asked_rad_s2)).norm() < 1e-4);
     }
 }

@@ -1,19 +1,18 @@
-//! The part of a reference's jerk and snap that is not seen from how the rotors turn a vehicle under a constant thrust.
+//! The part of a reference's jerk and snap that is not seen from how a vehicle turns under a constant thrust.
 
 use nalgebra::{Vector2, Vector3};
 
-use crate::Configuration;
 use crate::control::flat_attitude::FlatAttitude;
 use crate::control::required_thrust::RequiredThrust;
 use crate::guidance::heading::Heading;
 
-/// What a vehicle on its reference has beside the jerk and the snap of [`HorizontalMotion`], which follow from its body rate and from
-/// the torques of its rotors:
+/// What a vehicle on its reference has beside the jerk and the snap of [`HorizontalMotion`], which follow from how it turns under the thrust
+/// of now:
 ///
 /// ```text
 /// a = g e₃ − f R e₃
-/// j = ȧ + f R (ω × e₃)          the thrust f changes
-/// s = ä + f R (J⁻¹τ × e₃)       and the rate ω turns the thrust by itself
+/// j = ȧ + f R (ω × e₃)                         as the thrust f changes
+/// s = ä + f R (ω̇ × e₃ + ω × (ω × e₃))
 /// ```
 ///
 /// [`HorizontalMotion`]: crate::control::vehicle_motion::HorizontalMotion
@@ -27,16 +26,15 @@ pub(crate) struct UnseenMotion {
 
 impl UnseenMotion {
     /// Of a vehicle that is where its reference is.
-    pub(crate) fn on(required: &RequiredThrust, heading: &Heading, configuration: &Configuration) -> Self {
+    pub(crate) fn on(required: &RequiredThrust, heading: &Heading) -> Self {
         let RequiredThrust { acceleration_m_s2, jerk_m_s3, snap_m_s4 } = required;
         let flat = FlatAttitude::new(acceleration_m_s2, jerk_m_s3, snap_m_s4, heading);
-        let inertia = configuration.believed_inertia_kg_m2();
         let rate = flat.body_rate_rad_s;
-        // J⁻¹τ = ω̇ + J⁻¹ (ω × Jω)
-        let torque = flat.angular_acceleration_rad_s2
-            + rate.cross(&inertia.component_mul(&rate)).component_div(&inertia);
-        let seen = |turn: &Vector3<f64>| flat.attitude * turn.cross(&Vector3::z()) * -flat.thrust_m_s2;
-        Self { jerk_m_s3: (jerk_m_s3 - seen(&rate)).xy(), snap_m_s4: (snap_m_s4 - seen(&torque)).xy() }
+        // ḃ₃ and b̈₃ in body axes
+        let first = rate.cross(&Vector3::z());
+        let second = flat.angular_acceleration_rad_s2.cross(&Vector3::z()) + rate.cross(&first);
+        let seen = |turned: &Vector3<f64>| flat.attitude * turned * -flat.thrust_m_s2;
+        Self { jerk_m_s3: (jerk_m_s3 - seen(&first)).xy(), snap_m_s4: (snap_m_s4 - seen(&second)).xy() }
     }
 }
 
@@ -66,31 +64,24 @@ mod tests {
     }
 
     /// By differences: the jerk is that of the thrust alone, at the attitude of now; the snap is what is left of the whole one beside a
-    /// body that its torques alone speed up, from rest.
+    /// body that turns under a constant thrust.
     #[test]
-    fn it_is_what_a_constant_thrust_and_the_torques_leave() {
+    fn it_is_what_a_constant_thrust_leaves() {
         const H: f64 = 1e-3;
         let configuration = Configuration::default();
-        let inertia = Vector3::from(configuration.airframe.inertia_kg_m2);
         for time_s in [0.0, 0.4, 1.1, 2.3] {
             let flat = |time_s: f64| FlatAttitude::of(&eight(time_s));
             let now = flat(time_s);
             let required = RequiredThrust::whole(&configuration, &eight(time_s));
-            let unseen = UnseenMotion::on(&required, &Heading::fixed(0.0), &configuration);
+            let unseen = UnseenMotion::on(&required, &Heading::fixed(0.0));
 
             let thrust_alone = |later_s: f64| acceleration(flat(time_s + later_s).thrust_m_s2, &now.attitude);
             let jerk = (thrust_alone(H) - thrust_alone(-H)) / (2.0 * H);
             assert!((unseen.jerk_m_s3 - jerk.xy()).norm() < 1e-4, "{time_s}: {jerk}");
 
-            // Euler: τ = J ω̇ + ω × Jω, with ω̇ by differences.
-            let rate = now.body_rate_rad_s;
-            let turning = (flat(time_s + H).body_rate_rad_s - flat(time_s - H).body_rate_rad_s) / (2.0 * H);
-            let torque = inertia.component_mul(&turning) + rate.cross(&inertia.component_mul(&rate));
-            let torques_alone = |later_s: f64| {
-                let turned = torque.component_div(&inertia) * (later_s * later_s / 2.0);
-                acceleration(now.thrust_m_s2, &(now.attitude * UnitQuaternion::from_scaled_axis(turned)))
-            };
-            let seen = (torques_alone(H) - torques_alone(0.0)) * (2.0 / (H * H));
+            // The attitude goes its way under the thrust of now.
+            let turns_alone = |later_s: f64| acceleration(now.thrust_m_s2, &flat(time_s + later_s).attitude);
+            let seen = (turns_alone(H) - turns_alone(0.0) * 2.0 + turns_alone(-H)) / (H * H);
             let whole = (eight(time_s + H).jerk_m_s3 - eight(time_s - H).jerk_m_s3) / (2.0 * H);
             assert!((unseen.snap_m_s4 - (whole - seen).xy()).norm() < 1e-3, "{time_s}: {whole} {seen}");
         }
@@ -105,7 +96,7 @@ mod tests {
         };
         let configuration = Configuration::default();
         let required = RequiredThrust::whole(&configuration, &way);
-        let unseen = UnseenMotion::on(&required, &Heading::fixed(0.3), &configuration);
+        let unseen = UnseenMotion::on(&required, &Heading::fixed(0.3));
         assert!(unseen.jerk_m_s3.norm() < 1e-12 && unseen.snap_m_s4.norm() < 1e-12, "{unseen:?}");
     }
 }

@@ -13,7 +13,7 @@ pub(crate) struct HorizontalMotion {
     pub(crate) acceleration_m_s2: Vector2<f64>,
     /// Its rate as the body turns, m/s³.
     pub(crate) jerk_m_s3: Vector2<f64>,
-    /// The rate of that by the torques that the rotors make, m/s⁴.
+    /// The rate of that by the torques that the rotors make, and as the body goes on turning, m/s⁴.
     pub(crate) snap_m_s4: Vector2<f64>,
     /// The same by the torques that feedback of the attitude has asked for, m/s⁴.
     pub(crate) asked_snap_m_s4: Vector2<f64>,

@@ -31,6 +31,38 @@ fn goals_are_reached_by_slow_tilts() {
     }
 }
 
+/// A heading that turns as fast as it may does not push the vehicle sideways: with a Crazyflie, which had gone 4.8 m beyond the goal and 5.9 m
+/// off the way there, and with one that may turn faster.
+#[test]
+fn goals_are_reached_straight_while_the_heading_turns() {
+    let paper = (AirframePreset::Paper, Some(2.4), 2.0);
+    for (preset, yaw_rate_rad_s, turning_rad_s) in [(AirframePreset::Crazyflie, None, 1.3), paper] {
+        for kind in [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr] {
+            let mut configuration = Configuration::for_airframe(&preset.airframe()).unwrap();
+            configuration.controllers.kind = kind;
+            configuration.reference.shaping = false;
+            let most_rad_s = &mut configuration.limits.yaw_rate_rad_s;
+            *most_rad_s = yaw_rate_rad_s.unwrap_or(*most_rad_s);
+            let goal_m = [5.0, 0.0, 0.0];
+            let inputs = |time_us: u64| {
+                let mut inputs = goal(goal_m, turning_rad_s * time_us as f64 / 1e6);
+                inputs.reference.yaw_rate_rad_s = turning_rad_s;
+                inputs
+            };
+            let (mut beyond, mut aside) = (0.0_f64, 0.0_f64);
+            let end = fly(&configuration, &inputs, 6.0, |outputs| {
+                beyond = beyond.max(overshoot(outputs, goal_m));
+                aside = aside.max(outputs.position_m.y.abs());
+            });
+            let away_m = distance(&end.outputs(), goal_m);
+            assert!(
+                beyond < 0.05 && aside < 0.01 && away_m < 0.02,
+                "{preset:?} {kind:?}: {beyond}, {aside}, {away_m} m"
+            );
+        }
+    }
+}
+
 /// The speed limit holds between the samples of a slow controller, too: it was broken by a third.
 #[test]
 fn slow_samples_keep_the_speed_limit() {

@@ -446,3 +446,26 @@ fn the_heading_of_the_target_stays_within_half_a_turn() {
     assert!(told.iter().any(|yaw| *yaw > 2.7) && told.iter().any(|yaw| *yaw < -2.7), "{told:?}");
     assert!(told.iter().all(|yaw| yaw.abs() <= core::f32::consts::PI + 1e-6), "{told:?}");
 }
+
+/// A client that has streamed since before the takeoff may have the offboard mode at once when that ends: its set-points are as recent.
+#[test]
+fn set_points_that_come_during_a_takeoff_count_after_it() {
+    let mut bench = Bench::of(&settings(Identity::Px4));
+    let target = local(MavFrame::MAV_FRAME_LOCAL_NED, POSITION_ONLY, [3.0, 0.0, -4.0], [0.0; 3]);
+    bench.arm();
+    assert_eq!(bench.set_mode(Mode::Takeoff), 0);
+    bench.fly(0.5);
+    for _ in 0..200 {
+        send(&mut bench, &target);
+        for _ in 0..10 {
+            bench.fly(0.05);
+            if bench.mode() == Mode::Hold {
+                assert_eq!(bench.set_mode(Mode::Offboard), 0);
+                bench.stream(6.0, |bench| send(bench, &target));
+                assert!(bench.is_near([3.0, 0.0, -4.0]), "{:?}", bench.position());
+                return;
+            }
+        }
+    }
+    panic!("the takeoff did not end");
+}

@@ -317,6 +317,11 @@ impl Uploads {
         if self.denied(context, origin, number) {
             return;
         }
+        if kinds.contains(&PlanKind::Mission) && context.vehicle.keeps_mission() {
+            let fault = PlanFault::of_plan(FaultCode::Error, "the mission is being flown; leave Auto first");
+            answer::refused_aloud(context, origin, number, &fault);
+            return;
+        }
         // Whoever clears has given its own upload up.
         self.receiving = None;
         self.reservation.end(true, context.vehicle.time_us());

@@ -103,12 +103,20 @@ pub fn highres_imu(vehicle: &Vehicle) -> MavMessage {
     })
 }
 
-/// RAW_IMU: what stands in the registers, at the full scales of the parts.
+/// Per m/s², rad/s and G: those of mG, mrad/s and mgauss.
+const SCALES_OF_SCALED_IMU: [f64; 3] = [1e3 / GRAVITY_M_S2, 1e3, 1e3];
+
+/// RAW_IMU: what stands in the registers, at the full scales of the parts; of ArduPilot the units of SCALED_IMU.
 pub fn raw_imu(vehicle: &Vehicle) -> MavMessage {
     let readings = vehicle.readings();
-    let [xacc, yacc, zacc] = whole(&readings.inertial.specific_force_m_s2, ACCELEROMETER_COUNTS_PER_M_S2);
-    let [xgyro, ygyro, zgyro] = whole(&readings.inertial.body_rate_rad_s, GYROSCOPE_COUNTS_PER_RAD_S);
-    let [xmag, ymag, zmag] = whole(&field_gauss(&readings), COUNTS_PER_GAUSS);
+    let [force, rate, field] = if vehicle.identity().is_ardupilot() {
+        SCALES_OF_SCALED_IMU
+    } else {
+        [ACCELEROMETER_COUNTS_PER_M_S2, GYROSCOPE_COUNTS_PER_RAD_S, COUNTS_PER_GAUSS]
+    };
+    let [xacc, yacc, zacc] = whole(&readings.inertial.specific_force_m_s2, force);
+    let [xgyro, ygyro, zgyro] = whole(&readings.inertial.body_rate_rad_s, rate);
+    let [xmag, ymag, zmag] = whole(&field_gauss(&readings), field);
     MavMessage::RAW_IMU(RAW_IMU_DATA {
         time_usec: readings.inertial.time_us,
         xacc,
@@ -128,9 +136,10 @@ pub fn raw_imu(vehicle: &Vehicle) -> MavMessage {
 /// SCALED_IMU: mG, mrad/s and mgauss.
 pub fn scaled_imu(vehicle: &Vehicle) -> MavMessage {
     let readings = vehicle.readings();
-    let [xacc, yacc, zacc] = whole(&readings.inertial.specific_force_m_s2, 1e3 / GRAVITY_M_S2);
-    let [xgyro, ygyro, zgyro] = whole(&readings.inertial.body_rate_rad_s, 1e3);
-    let [xmag, ymag, zmag] = whole(&field_gauss(&readings), 1e3);
+    let [force, rate, field] = SCALES_OF_SCALED_IMU;
+    let [xacc, yacc, zacc] = whole(&readings.inertial.specific_force_m_s2, force);
+    let [xgyro, ygyro, zgyro] = whole(&readings.inertial.body_rate_rad_s, rate);
+    let [xmag, ymag, zmag] = whole(&field_gauss(&readings), field);
     MavMessage::SCALED_IMU(SCALED_IMU_DATA {
         time_boot_ms: boot_ms(readings.inertial.time_us),
         xacc,

@@ -124,3 +124,13 @@ fn a_mission_above_an_unknown_ground_forbids_arming() {
     flier.set_all(&[("WP_RFND_USE", 1.0), ("RNGFND1_TYPE", 0.0)]);
     assert!(disabled(&mut flier), "there is none");
 }
+
+/// ModeBrake::allows_arming.
+#[test]
+fn brake_is_not_armable() {
+    const BRAKE: u32 = 17;
+    let mut flier = Flier::new();
+    flier.change_mode(BRAKE);
+    assert!(has(&mut flier, "Brake mode not armable"), "{:?}", flier.bench.texts());
+    assert_eq!(flier.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ARM), FAILED);
+}

@@ -149,3 +149,19 @@ fn guided_is_not_enabled_by_a_command() {
     );
     assert_eq!(flier.mode(), GUIDED);
 }
+
+/// GCS_MAVLINK_Copter::handle_command_int_do_reposition: outside of Guided it is denied without the flag that changes the mode.
+#[test]
+fn a_reposition_leaves_other_modes_alone_unless_it_may_change_them() {
+    let mut flier = Flier::new();
+    flier.take_off(10.0, LOITER);
+    let there = flier.vehicle().frame().to_geodetic(&nalgebra::Vector3::new(20.0, 0.0, -10.0));
+    let place = [there.latitude_deg as f32, there.longitude_deg as f32, there.altitude_m as f32];
+    let with = |flag: f32| [-1.0, flag, 0.0, f32::NAN, place[0], place[1], place[2]];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_DO_REPOSITION, with(0.0)), MavResult::MAV_RESULT_DENIED as u8);
+    assert_eq!(flier.mode(), LOITER);
+    assert_eq!(flier.command(MavCmd::MAV_CMD_DO_REPOSITION, with(1.0)), ACCEPTED);
+    assert_eq!(flier.mode(), GUIDED);
+    // There it is a target like another.
+    assert_eq!(flier.command(MavCmd::MAV_CMD_DO_REPOSITION, with(0.0)), ACCEPTED);
+}

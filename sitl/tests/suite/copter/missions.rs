@@ -2,7 +2,7 @@
 
 use super::flier::*;
 use crate::common::settings;
-use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage};
+use mavlink::dialects::ardupilotmega::{MISSION_CLEAR_ALL_DATA, MavCmd, MavMessage, MavMissionResult};
 use vehicle::identity::Identity;
 use vehicle::plan::{PlanKind, command};
 
@@ -244,4 +244,31 @@ fn a_takeoff_to_no_height_climbs() {
     flier.arm();
     flier.wait("the waypoint", 60.0, |flier| flier.vehicle().mission_status().current == 3);
     assert!((flier.height_m() - 15.0).abs() < 1.0, "{} m", flier.height_m());
+}
+
+/// AP_Mission::clear: a mission that is flown stays.
+#[test]
+fn a_mission_that_is_flown_cannot_be_cleared() {
+    let rows = [(TAKEOFF, 0.0, 0.0, 10.0), (WAYPOINT, 60.0, 0.0, 10.0), (RETURN, 0.0, 0.0, 0.0)];
+    let mut flier = with_mission(&rows);
+    flier.change_mode(AUTO);
+    flier.arm();
+    flier.wait("the way", 60.0, |flier| flier.vehicle().mission_status().current == 2);
+    let clear = |flier: &mut Flier| {
+        flier.bench.heard.clear();
+        flier.bench.send(MavMessage::MISSION_CLEAR_ALL(MISSION_CLEAR_ALL_DATA {
+            target_system: 1,
+            target_component: 1,
+            ..MISSION_CLEAR_ALL_DATA::default()
+        }));
+        let result = |message: &MavMessage| match message {
+            MavMessage::MISSION_ACK(ack) => Some(ack.mavtype),
+            _ => None,
+        };
+        flier.latest(result).expect("an answer")
+    };
+    assert_eq!(clear(&mut flier), MavMissionResult::MAV_MISSION_ERROR);
+    assert_eq!(flier.mode(), AUTO);
+    flier.change_mode(LOITER);
+    assert_eq!(clear(&mut flier), MavMissionResult::MAV_MISSION_ACCEPTED);
 }

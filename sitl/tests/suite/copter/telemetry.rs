@@ -243,3 +243,23 @@ fn a_radio_steers_after_its_trims_and_once_it_is_armed() {
     flier.rc(3, 1900);
     flier.wait("a climb by the stick", 5.0, |flier| flier.height_m() > 1.0);
 }
+
+/// GCS_MAVLINK::send_raw_imu: in mG and mgauss like SCALED_IMU. In hover that is a G up and the field of the place.
+#[test]
+fn raw_measurements_have_the_units_of_scaled_ones() {
+    let mut flier = Flier::new();
+    flier.take_off(10.0, LOITER);
+    flier.fly(3.0);
+    let every_100_ms = [RAW_IMU_DATA::ID as f32, 100_000.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, every_100_ms), ACCEPTED);
+    flier.fly(1.0);
+    let raw = |message: &MavMessage| match message {
+        MavMessage::RAW_IMU(raw) => Some([raw.xmag, raw.ymag, raw.zmag, raw.zacc]),
+        _ => None,
+    };
+    let [x, y, z, up] = flier.latest(raw).expect("RAW_IMU").map(f64::from);
+    assert!((up + 1000.0).abs() < 20.0, "{up} mG");
+    // 0.48 G near Zurich (WMM).
+    let field = x.hypot(y).hypot(z);
+    assert!((400.0..600.0).contains(&field), "{field} mgauss");
+}

@@ -68,7 +68,12 @@ impl Vehicle {
                 Request::Enter(mode) => self.enter(mode),
                 Request::GoOnIn(mode) => {
                     self.decided.switch_to(mode);
-                    self.machines.offboard.forget();
+                    if mode == Mode::Offboard {
+                        // What was asked for before does not lead it.
+                        self.machines.offboard.forget();
+                    } else {
+                        self.machines.offboard.begin();
+                    }
                 }
                 Request::ChangeSpeeds(change) => self.use_speeds_or_say(self.machines.speeds.after(change)),
                 Request::See(cause, present) => self.see(cause, present),

@@ -10,7 +10,7 @@ use super::super::fence_watch::FenceRecord;
 use super::super::flight_times::FlightTimes;
 use super::super::home::Home;
 use super::super::landed::LandedState;
-use super::super::mission::{Beginning, MissionStatus, PlannedLeg, planned_way};
+use super::super::mission::{Beginning, MissionState, MissionStatus, PlannedLeg, planned_way};
 use super::super::orbit_request::OrbitStatus;
 use super::super::set_point::PositionSetPoint;
 use super::super::speeds::with_speeds;
@@ -172,6 +172,17 @@ impl Vehicle {
     /// The mode.
     pub fn mode(&self) -> Mode {
         self.decided.mode()
+    }
+
+    /// Whether commands and set-points of clients lead it: ArduPilot's guided modes, in one of which it takes off.
+    pub fn is_guided(&self) -> bool {
+        matches!(self.mode(), Mode::Offboard | Mode::Takeoff | Mode::GuidedAttitude)
+    }
+
+    /// Whether its mission cannot be cleared: ArduPilot flies it to its end.
+    pub fn keeps_mission(&self) -> bool {
+        let is_flown = self.is_armed() && self.mission_status().state == MissionState::Active;
+        self.identity().is_ardupilot() && is_flown
     }
 
     /// The mode that clients are shown.
