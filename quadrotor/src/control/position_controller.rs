@@ -175,8 +175,8 @@ fn planned_error_m(
     most_m_s2: f64,
 ) -> Vector2<f64> {
     let error = seen.position_m - reference.position;
-    // An error is closed against its direction.
-    let ahead_m_s = -error.try_normalize(0.0).unwrap_or_default().dot(&reference.velocity);
+    // An error is closed against its direction; none has none.
+    let ahead_m_s = -error.dot(&reference.velocity) / error.norm().max(f64::MIN_POSITIVE);
     let speed_m_s = configuration.limits.speed_horizontal_m_s;
     let closing_m_s = speed_m_s * closing_share(speed_m_s, ahead_m_s);
     let error = in_sight(&error, horizon_m(closing_m_s, most_m_s2));

@@ -159,8 +159,8 @@ pub(crate) fn closing_share(limit_m_s: f64, ahead_m_s: f64) -> f64 {
 pub(crate) fn in_sight(error: &Vector2<f64>, horizon_m: f64) -> Vector2<f64> {
     // The square of a finite number can be infinite.
     let unit = error.amax().max(1.0);
-    let size = unit * (error / unit).norm();
-    if size > horizon_m { error / unit * (horizon_m / (size / unit)) } else { *error }
+    let (size, horizon) = ((error / unit).norm(), horizon_m / unit);
+    error * (horizon / size.max(horizon))
 }
 
 #[cfg(test)]
