@@ -37,11 +37,10 @@ fn rust_code_of_readme_and_book_is_a_documentation_test() {
         assert_eq!(blocks.len(), sources.len(), "{document}");
         for (code, source) in blocks.iter().zip(sources) {
             let text = files::read_text(&workspace.root().join(source)).expect("is there");
-            let of_item =
-                |line: &'_ str| line.trim_start_matches("/// ").trim_start_matches("//! ").to_owned();
-            let documented: Vec<String> = text.lines().map(of_item).collect();
+            let documented: Vec<&str> =
+                text.lines().map(|line| line.trim_start_matches("/// ").trim_start_matches("//! ")).collect();
             for line in code {
-                assert!(documented.contains(line), "{document}: not in {source}: {line}");
+                assert!(documented.contains(&line.as_str()), "{document}: not in {source}: {line}");
             }
         }
     }

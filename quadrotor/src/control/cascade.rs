@@ -206,7 +206,7 @@ impl Cascade {
         let mut seen = seen.horizontal(configuration, &self.attitude.feedback_rad_s2());
         if !now.is_at_rest() {
             let required = RequiredThrust::of(configuration, reference, lean_rad);
-            let unseen = UnseenMotion::on(&required, &Heading::of(reference));
+            let unseen = UnseenMotion::on(&required);
             seen.jerk_m_s3 += unseen.jerk_m_s3;
             seen.snap_m_s4 += unseen.snap_m_s4;
         }

@@ -4,6 +4,7 @@ use nalgebra::{UnitQuaternion, Vector1, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::turned;
+use crate::control::euler_equation::angular_acceleration_rad_s2;
 use crate::control::mass_belief::MassBelief;
 use crate::design::estimator_design::EstimatorDesign;
 use crate::finite::are_finite;
@@ -136,11 +137,9 @@ impl Estimator {
         let thrust = halfway * Vector3::z() * (wrench.thrust_n / (believed * airframe.mass_kg));
         let acceleration = Vector3::z() * GRAVITY_M_S2 - thrust;
         let drag = configuration.drag_1_s().component_mul(&self.body.velocity_m_s);
-        // ω̇ = J⁻¹ (τ − ω × Jω)
         let inertia = Vector3::from(airframe.inertia_kg_m2) * believed;
         let rate = self.body.body_rate_rad_s;
-        let torque = wrench.torque_n_m - rate.cross(&inertia.component_mul(&rate));
-        let angular = torque.component_div(&inertia);
+        let angular = angular_acceleration_rad_s2(&inertia, &rate, &wrench.torque_n_m);
 
         let mut angle = Vector3::zeros();
         let apart = turned(&rotation, &measured.rotation());

@@ -51,6 +51,47 @@ pub struct FlatAttitude {
     pub thrust_rate_m_s3: f64,
 }
 
+/// The thrust per mass f b₃ that a point of a trajectory requires, and how it changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FlatThrust {
+    /// f, m/s².
+    pub(crate) size_m_s2: f64,
+    /// f', m/s³.
+    pub(crate) size_rate_m_s3: f64,
+    /// f", m/s⁴.
+    pub(crate) size_acceleration_m_s4: f64,
+    /// b₃, NED.
+    pub(crate) down: Vector3<f64>,
+    /// ḃ₃, 1/s.
+    pub(crate) down_rate: Vector3<f64>,
+    /// b̈₃, 1/s².
+    down_acceleration: Vector3<f64>,
+}
+
+impl FlatThrust {
+    /// Of an acceleration, m/s², with jerk, m/s³, and snap, m/s⁴, in NED.
+    pub(crate) fn new(
+        acceleration_m_s2: &Vector3<f64>,
+        jerk_m_s3: &Vector3<f64>,
+        snap_m_s4: &Vector3<f64>,
+    ) -> Self {
+        // t = g e₃ − a = f b₃
+        let thrust = Vector3::z() * GRAVITY_M_S2 - acceleration_m_s2;
+        let (first, second) = (-jerk_m_s3, -snap_m_s4);
+        let size_m_s2 = thrust.norm();
+        let down = if size_m_s2 > NO_THRUST_M_S2 { thrust * (1.0 / size_m_s2) } else { Vector3::z() };
+        let per_thrust = 1.0 / size_m_s2.max(LEAST_THRUST_M_S2);
+        // f' = b₃·ṫ,  ḃ₃ = (ṫ − f' b₃)/f
+        let size_rate_m_s3 = down.dot(&first);
+        let down_rate = (first - down * size_rate_m_s3) * per_thrust;
+        // f" = ḃ₃·ṫ + b₃·ẗ,  b̈₃ = (ẗ − f" b₃ − 2 f' ḃ₃)/f
+        let size_acceleration_m_s4 = down_rate.dot(&first) + down.dot(&second);
+        let down_acceleration =
+            (second - down * size_acceleration_m_s4 - down_rate * (2.0 * size_rate_m_s3)) * per_thrust;
+        Self { size_m_s2, size_rate_m_s3, size_acceleration_m_s4, down, down_rate, down_acceleration }
+    }
+}
+
 impl FlatAttitude {
     /// Of a point of a trajectory.
     pub fn of(reference: &PositionReference) -> Self {
@@ -72,35 +113,22 @@ impl FlatAttitude {
         snap_m_s4: &Vector3<f64>,
         heading: &Heading,
     ) -> Self {
-        // t = g e₃ − a = f b₃
-        let thrust = Vector3::z() * GRAVITY_M_S2 - acceleration_m_s2;
-        let (first, second) = (-jerk_m_s3, -snap_m_s4);
-        let size = thrust.norm();
-        let down = if size > NO_THRUST_M_S2 { thrust * (1.0 / size) } else { Vector3::z() };
-        let per_thrust = 1.0 / size.max(LEAST_THRUST_M_S2);
-        // f' = b₃·ṫ,  ḃ₃ = (ṫ − f' b₃)/f
-        let size_rate = down.dot(&first);
-        let down_rate = (first - down * size_rate) * per_thrust;
-        // f" = ḃ₃·ṫ + b₃·ẗ,  b̈₃ = (ẗ − f" b₃ − 2 f' ḃ₃)/f
-        let size_acceleration = down_rate.dot(&first) + down.dot(&second);
-        let down_acceleration =
-            (second - down * size_acceleration - down_rate * (2.0 * size_rate)) * per_thrust;
-
+        let thrust = FlatThrust::new(acceleration_m_s2, jerk_m_s3, snap_m_s4);
         let yaw = Angle::new(heading.yaw_rad);
-        let [roll, pitch] = tilt_angles(&down, yaw);
+        let [roll, pitch] = tilt_angles(&thrust.down, yaw);
         let attitude = attitude_of([roll, pitch, yaw]);
         let in_body = attitude.inverse();
         let turn = Turn { roll, pitch, yaw: (heading.yaw_rate_rad_s, heading.yaw_acceleration_rad_s2) };
         let (body_rate_rad_s, angular_acceleration_rad_s2) =
-            turn.of(&(in_body * down_rate), &(in_body * down_acceleration));
+            turn.of(&(in_body * thrust.down_rate), &(in_body * thrust.down_acceleration));
         Self {
             attitude,
             roll_rad: roll.rad(),
             pitch_rad: pitch.rad(),
             body_rate_rad_s,
             angular_acceleration_rad_s2,
-            thrust_m_s2: size,
-            thrust_rate_m_s3: size_rate,
+            thrust_m_s2: thrust.size_m_s2,
+            thrust_rate_m_s3: thrust.size_rate_m_s3,
         }
     }
 }

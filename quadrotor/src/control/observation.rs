@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use crate::control::attitude_controller::VehicleRotation;
 use crate::control::estimator::Estimator;
+use crate::control::euler_equation::angular_acceleration_rad_s2;
 use crate::control::vehicle_motion::{HorizontalMotion, VerticalMotion};
 use crate::{Configuration, GRAVITY_M_S2, RigidBody, wrench_of_rotors};
 
@@ -59,10 +60,8 @@ impl Observation {
         let turned = |by: &Vector3<f64>| (rotation * by.cross(&Vector3::z()) * -self.lift_m_s2).xy();
         let rate = &self.body.body_rate_rad_s;
         let going_on = rotation * rate.cross(&rate.cross(&Vector3::z())) * -self.lift_m_s2;
-        // ω̇ = J⁻¹ (τ − ω × Jω)
         let inertia = configuration.believed_inertia_kg_m2();
-        let gyroscopic_n_m = rate.cross(&inertia.component_mul(rate));
-        let turning = (self.rotor_torque_n_m - gyroscopic_n_m).component_div(&inertia);
+        let turning = angular_acceleration_rad_s2(&inertia, rate, &self.rotor_torque_n_m);
         HorizontalMotion {
             position_m: self.body.position_m.xy(),
             velocity_m_s: self.body.velocity_m_s.xy(),

@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use crate::control::euler_equation::{angular_acceleration_rad_s2, gyroscopic_n_m};
+
 /// Largest share of the torque about roll and pitch that is spent on them. What is not cancelled turns the angular velocity
 /// and does no work, so that the loop stays damped whatever is left out.
 const CANCELLED_SHARE: f64 = 0.5;
@@ -63,7 +65,7 @@ impl Spin {
     pub(crate) fn beside(&self, most_n_m: f64) -> Beside {
         let (inertia, rate) = (&self.inertia_kg_m2, &self.body_rate_rad_s);
         let spin = Vector3::z() * rate.z;
-        let gyroscopic = |rate: &Vector3<f64>| rate.cross(&inertia.component_mul(rate));
+        let gyroscopic = |rate: &Vector3<f64>| gyroscopic_n_m(inertia, rate);
         let whole = gyroscopic(rate) - inertia.component_mul(&spin.cross(&self.rate_error_rad_s));
         let size = whole.xy().norm();
         let allowed = CANCELLED_SHARE * most_n_m;
@@ -72,8 +74,8 @@ impl Spin {
         let made_n_m = whole.component_mul(&lateral);
 
         let own = (self.torque_n_m - made_n_m).component_div(inertia);
-        // ω̇ = J⁻¹ (τ − ω × Jω) moves both ω and δ, if the reference keeps its rate.
-        let turning = (self.torque_n_m - gyroscopic(rate)).component_div(inertia);
+        // It moves both ω and δ, if the reference keeps its rate.
+        let turning = angular_acceleration_rad_s2(inertia, rate, &self.torque_n_m);
         let moved = gyroscopic(&(rate + turning * self.delay_s))
             - gyroscopic(rate)
             - inertia.component_mul(&spin.cross(&turning)) * self.delay_s;

@@ -1,18 +1,17 @@
 //! The part of a reference's jerk and snap that is not seen from how a vehicle turns under a constant thrust.
 
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector2;
 
-use crate::control::flat_attitude::FlatAttitude;
+use crate::control::flat_attitude::FlatThrust;
 use crate::control::required_thrust::RequiredThrust;
-use crate::guidance::heading::Heading;
 
 /// What a vehicle on its reference has beside the jerk and the snap of [`HorizontalMotion`], which follow from how it turns under the thrust
 /// of now:
 ///
 /// ```text
-/// a = g e₃ − f R e₃
-/// j = ȧ + f R (ω × e₃)                         as the thrust f changes
-/// s = ä + f R (ω̇ × e₃ + ω × (ω × e₃))
+/// a = g e₃ − f b₃
+/// j = ȧ + f ḃ₃ = −f' b₃
+/// s = ä + f b̈₃ = −f" b₃ − 2 f' ḃ₃         with the thrust per mass f along −b₃ = −R e₃
 /// ```
 ///
 /// [`HorizontalMotion`]: crate::control::vehicle_motion::HorizontalMotion
@@ -26,15 +25,14 @@ pub(crate) struct UnseenMotion {
 
 impl UnseenMotion {
     /// Of a vehicle that is where its reference is.
-    pub(crate) fn on(required: &RequiredThrust, heading: &Heading) -> Self {
+    pub(crate) fn on(required: &RequiredThrust) -> Self {
         let RequiredThrust { acceleration_m_s2, jerk_m_s3, snap_m_s4 } = required;
-        let flat = FlatAttitude::new(acceleration_m_s2, jerk_m_s3, snap_m_s4, heading);
-        let rate = flat.body_rate_rad_s;
-        // ḃ₃ and b̈₃ in body axes
-        let first = rate.cross(&Vector3::z());
-        let second = flat.angular_acceleration_rad_s2.cross(&Vector3::z()) + rate.cross(&first);
-        let seen = |turned: &Vector3<f64>| flat.attitude * turned * -flat.thrust_m_s2;
-        Self { jerk_m_s3: (jerk_m_s3 - seen(&first)).xy(), snap_m_s4: (snap_m_s4 - seen(&second)).xy() }
+        let thrust = FlatThrust::new(acceleration_m_s2, jerk_m_s3, snap_m_s4);
+        let FlatThrust { size_rate_m_s3, size_acceleration_m_s4, down, down_rate, .. } = thrust;
+        Self {
+            jerk_m_s3: (down * -size_rate_m_s3).xy(),
+            snap_m_s4: (down * -size_acceleration_m_s4 - down_rate * (2.0 * size_rate_m_s3)).xy(),
+        }
     }
 }
 
@@ -45,7 +43,6 @@ mod tests {
     use super::UnseenMotion;
     use crate::control::flat_attitude::FlatAttitude;
     use crate::control::required_thrust::RequiredThrust;
-    use crate::guidance::heading::Heading;
     use crate::guidance::known_motion::motion;
     use crate::{Configuration, GRAVITY_M_S2, PositionReference};
 
@@ -73,7 +70,7 @@ mod tests {
             let flat = |time_s: f64| FlatAttitude::of(&eight(time_s));
             let now = flat(time_s);
             let required = RequiredThrust::whole(&configuration, &eight(time_s));
-            let unseen = UnseenMotion::on(&required, &Heading::fixed(0.0));
+            let unseen = UnseenMotion::on(&required);
 
             let thrust_alone = |later_s: f64| acceleration(flat(time_s + later_s).thrust_m_s2, &now.attitude);
             let jerk = (thrust_alone(H) - thrust_alone(-H)) / (2.0 * H);
@@ -96,7 +93,7 @@ mod tests {
         };
         let configuration = Configuration::default();
         let required = RequiredThrust::whole(&configuration, &way);
-        let unseen = UnseenMotion::on(&required, &Heading::fixed(0.3));
+        let unseen = UnseenMotion::on(&required);
         assert!(unseen.jerk_m_s3.norm() < 1e-12 && unseen.snap_m_s4.norm() < 1e-12, "{unseen:?}");
     }
 }

@@ -94,7 +94,8 @@ function read(data) {
 function modesOf(status) {
   const news = [];
   for (const row of status) {
-    const mode = MODES.get(row("nav_state")) ?? `mode ${row("nav_state")}`;
+    const number = row("nav_state");
+    const mode = MODES.get(number) ?? `mode ${number}`;
     if (news.at(-1)?.mode !== mode) news.push({ id: 1, time_s: row("timestamp") / 1e6, mode });
   }
   return news;

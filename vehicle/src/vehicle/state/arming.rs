@@ -55,11 +55,10 @@ impl Vehicle {
         obstacles.extend(rotor_obstacles(self.faults().rotors()));
         let identity = situation.identity;
         match situation.mode {
-            Mode::Hold if identity.is_ardupilot() => {
-                let name = identity.mode_name(situation.mode);
-                obstacles.push(ArmingObstacle::new(Subject::Mode, format!("{name} mode not armable")));
-            }
-            Mode::Land | Mode::Return | Mode::SmartReturn | Mode::Orbit | Mode::Follow => {
+            // ArduPilot's Hold is Brake, which ends a flight; PX4's begins one.
+            Mode::Land | Mode::Return | Mode::SmartReturn | Mode::Orbit | Mode::Follow | Mode::Hold
+                if identity.is_ardupilot() || situation.mode != Mode::Hold =>
+            {
                 let name = identity.mode_name(situation.mode);
                 let text = if identity.is_ardupilot() {
                     format!("{name} mode not armable")
