@@ -7,6 +7,7 @@ use crate::control::cascade::most_horizontal;
 use crate::control::command_limits::position_bandwidth_rad_s;
 use crate::control::observation::Observation;
 use crate::design::attitude_loop::AttitudeLoop;
+use crate::design::braking_way::swing_s;
 use crate::design::position_limits::{horizon_m, in_sight};
 use crate::guidance::eased_limits::EasedLimits;
 use crate::guidance::reference_guidance::Guidance;
@@ -133,14 +134,6 @@ fn asked(configuration: &Configuration, attitude: Option<&AttitudeLoop>, error_m
     rate.max(acceleration) / GRAVITY_M_S2
 }
 
-/// How long the tilt takes from one lean to the opposite one, from rest to rest, s.
-fn swing_s(limits: &Limits) -> f64 {
-    let (way_rad, rate, acceleration) =
-        (2.0 * limits.tilt_rad, limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2);
-    let reaches_rate = way_rad * acceleration > rate * rate;
-    if reaches_rate { way_rad / rate + rate / acceleration } else { 2.0 * libm::sqrt(way_rad / acceleration) }
-}
-
 /// The limits of the way. Beside a jerk j, changing the acceleration by a takes a/j, and that of the tilt to begin and to end 2j/(g α): both
 /// together are shortest with j = √(a g α/2).
 fn turned_limits(configuration: &Configuration, lean_share: f64) -> Limits {
@@ -158,20 +151,4 @@ fn turned_limits(configuration: &Configuration, lean_share: f64) -> Limits {
 /// The same goal at no height.
 fn at_no_height(goal: &PositionReference) -> PositionReference {
     PositionReference::goal([goal.position_m.x, goal.position_m.y, 0.0], 0.0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::swing_s;
-    use crate::Limits;
-
-    /// 1.2 rad at 2 rad/s, of which a quarter of a second each is lost at both ends, or without reaching that rate.
-    #[test]
-    fn a_swing_takes_as_long_as_rate_and_acceleration_demand() {
-        let limits = Limits { tilt_rad: 0.6, tilt_rate_rad_s: 2.0, ..Limits::default() };
-        for (tilt_acceleration_rad_s2, expected_s) in [(8.0, 0.6 + 0.25), (1.0, 2.0 * libm::sqrt(1.2))] {
-            let found_s = swing_s(&Limits { tilt_acceleration_rad_s2, ..limits });
-            assert!((found_s - expected_s).abs() < 1e-12, "{found_s}");
-        }
-    }
 }

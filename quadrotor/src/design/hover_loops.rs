@@ -31,7 +31,8 @@ pub struct HoverLoop<const P: usize> {
 pub struct HoverLoops {
     /// z, v_z, z̈ with the rotors' lag; input G.
     pub altitude: HoverLoop<1>,
-    /// x and its derivatives up to the snap over the closed attitude loop, then those of y.
+    /// x and its derivatives up to the snap over the closed attitude loop, then those of y. Far goals are not told apart here, and the way
+    /// to brake on before one is not limited.
     pub position: HoverLoop<2>,
     /// Roll and pitch, each with its rate and acceleration.
     pub lean: HoverLoop<2>,

@@ -53,6 +53,12 @@ impl<const P: usize> LoopProblem<P> {
         })
     }
 
+    /// The same problem under further limits, behind those that it has.
+    pub(crate) fn also_within(mut self, limits: impl IntoIterator<Item = SignalLimit>) -> Self {
+        self.limits.extend(limits);
+        self
+    }
+
     /// The same problem, planned about a feedback with another share of its bandwidth.
     pub(crate) fn planned_about(self, stabilizing_share: f64) -> Self {
         Self { stabilizing_share, ..self }

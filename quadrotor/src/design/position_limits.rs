@@ -118,15 +118,20 @@ pub(crate) fn position_bounds(
     })
 }
 
-/// The largest distance, m, at which a set-point is seen: a plan that is shorter cannot tell further ones apart, and beyond that the
-/// speed limit decides.
+/// The largest distance, m, at which a plan sees a set-point: one that is shorter cannot tell further ones apart, and has no solution that
+/// keeps all limits. Beyond that the speed limit decides.
 ///
 /// ```text
-/// v²/a + 1.2 s · v
+/// v²/(2a) + 1.3 s · v
 /// ```
 ///
-/// The first term is twice the way to brake from the speed limit v at an acceleration a.
+/// The first term is the way to brake from the speed limit v at an acceleration a.
 pub(crate) fn horizon_m(speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
+    speed_m_s * speed_m_s / (2.0 * acceleration_m_s2) + 1.3 * speed_m_s
+}
+
+/// The same of a regulator, which does not plan: v²/a + 1.2 s · v.
+pub(crate) fn regulator_horizon_m(speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
     speed_m_s * speed_m_s / acceleration_m_s2 + 1.2 * speed_m_s
 }
 
@@ -249,7 +254,7 @@ mod tests {
     #[test]
     fn far_goals_are_seen_at_the_horizon() {
         let horizon = horizon_m(8.0, 4.0);
-        assert!((horizon - (16.0 + 9.6)).abs() < 1e-12);
+        assert!((horizon - (8.0 + 10.4)).abs() < 1e-12);
         let near = Vector2::new(3.0, -4.0);
         assert_eq!(in_sight(&near, horizon), near);
         let far = in_sight(&Vector2::new(-3e300, 4e300), 5.0);

@@ -7,6 +7,7 @@ use crate::control::observed_motion::MotionModel;
 use crate::control::tracking_law::TrackingLaw;
 use crate::design::altitude_limits::altitude_limits;
 use crate::design::attitude_loop::AttitudeLoop;
+use crate::design::braking_way::braking_limits;
 use crate::design::capacities::{ALTITUDE_FEW, ALTITUDE_MANY, POSITION_FEW, POSITION_MANY};
 use crate::design::cascade_design::DesignReport;
 use crate::design::linear_models::{altitude_model, altitude_model_with_lag, double_integrators};
@@ -84,7 +85,8 @@ pub(crate) fn position_design(
     let sample_time_s = settings.sample_time_s();
     let designed = || match attitude {
         Some(attitude) => {
-            let problem = position_problem(configuration, &attitude)?;
+            let problem =
+                position_problem(configuration, &attitude)?.also_within(braking_limits(sample_time_s));
             let (law, report) = StabilizedLaw::new(controllers.kind, &problem)?.law_and_report();
             let motion = by_motion(
                 controllers.kind,
