@@ -317,9 +317,9 @@ impl Cascade {
             let required_m_s2 = required.acceleration_m_s2.xy().norm();
             self.largest_lean(configuration, wanted_m_s2.z).beside(required_m_s2)
         };
-        // How the limit moves with the feedback is not known.
-        let within = RequiredThrust { acceleration_m_s2: wanted_m_s2, ..*required }
-            .leaning_at_most(largest_m_s2, |_| [0.0, 0.0]);
+        // The limit moves with the vertical acceleration; how it moves with the feedback is not known.
+        let wanted = RequiredThrust { acceleration_m_s2: wanted_m_s2, ..*required };
+        let within = wanted.leaning_at_most(largest_m_s2, |most_m_s2| wanted.motion_of_leaning(most_m_s2));
         FlatAttitude::new(&within.acceleration_m_s2, &within.jerk_m_s3, &within.snap_m_s4, heading)
     }
 

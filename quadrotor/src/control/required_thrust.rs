@@ -93,17 +93,27 @@ impl RequiredThrust {
     ///
     /// The least that is commanded however weak the rotors are does not change.
     fn motion_of_most(&self, m: f64, lean_rad: f64) -> [f64; 2] {
-        let [w, w_rate, w_bend] =
-            [GRAVITY_M_S2 - self.acceleration_m_s2.z, -self.jerk_m_s3.z, -self.snap_m_s4.z];
         if m == most_horizontal(self.acceleration_m_s2.z, lean_rad) {
-            let tangent = if w > NOTHING_M_S2 { m / w } else { 0.0 };
-            return [tangent * w_rate, tangent * w_bend];
+            return self.motion_of_leaning(m);
         }
         if m <= LEAST_HORIZONTAL_M_S2 {
             return [0.0, 0.0];
         }
+        let [w, w_rate, w_bend] = self.carrying();
         let rate = -w * w_rate / m;
         [rate, -(w * w_bend + w_rate * w_rate + rate * rate) / m]
+    }
+
+    /// The two derivatives of a horizontal acceleration m beside which the lean stays the same: those of w m/w.
+    pub(crate) fn motion_of_leaning(&self, m: f64) -> [f64; 2] {
+        let [w, w_rate, w_bend] = self.carrying();
+        let tangent = if w > NOTHING_M_S2 { m / w } else { 0.0 };
+        [tangent * w_rate, tangent * w_bend]
+    }
+
+    /// w = g − a_z and its derivatives.
+    fn carrying(&self) -> [f64; 3] {
+        [GRAVITY_M_S2 - self.acceleration_m_s2.z, -self.jerk_m_s3.z, -self.snap_m_s4.z]
     }
 
     /// The same with a horizontal acceleration of at most m, which is only asked for if there is one, as its two derivatives are if it is
@@ -239,6 +249,27 @@ pub(crate) mod tests {
             assert_eq!((required.jerk_m_s3.z, required.snap_m_s4.z), (0.0, 0.0));
             assert!(RequiredThrust::whole(&configuration, &reference).is_beyond_thrust(&configuration));
         }
+    }
+
+    /// A thrust that is cut off at a lean, and that falls meanwhile, leans as far all the time: by differences, its tangent stays.
+    #[test]
+    fn what_is_cut_off_keeps_its_lean() {
+        const STEP_S: f64 = 1e-3;
+        let whole = RequiredThrust {
+            acceleration_m_s2: Vector3::new(6.0, -3.0, 1.5),
+            jerk_m_s3: Vector3::new(-2.0, 1.0, 8.0),
+            snap_m_s4: Vector3::new(5.0, 4.0, -30.0),
+        };
+        let cut = whole.leaning_at_most(|| 4.0, |most_m_s2| whole.motion_of_leaning(most_m_s2));
+        let lean = |time_s: f64| {
+            let acceleration =
+                cut.acceleration_m_s2 + cut.jerk_m_s3 * time_s + cut.snap_m_s4 * (time_s * time_s / 2.0);
+            acceleration.xy().norm() / (crate::GRAVITY_M_S2 - acceleration.z)
+        };
+        let [before, now, after] = [-STEP_S, 0.0, STEP_S].map(lean);
+        assert!((now - 4.0 / (crate::GRAVITY_M_S2 - 1.5)).abs() < 1e-12, "{now}");
+        assert!(((after - before) / (2.0 * STEP_S)).abs() < 1e-4, "{before} {after}");
+        assert!(((after - 2.0 * now + before) / (STEP_S * STEP_S)).abs() < 1e-3, "{before} {now} {after}");
     }
 
     /// Within the lean a reference requires what it asks for and its drag; beyond, the largest lean in the same direction.
