@@ -13,6 +13,7 @@ use super::px4_parameters::PX4_PARAMETERS;
 use super::radio_parameters::radio_parameters;
 use super::simulation_parameters::{PX4_WIND_PARAMETERS, SIMULATION_PARAMETERS, WIND_PARAMETERS};
 use super::source_parameters::SOURCE_PARAMETERS;
+use super::speed_parameters::{SPEED_PARAMETERS, settle};
 use super::stream_rate_parameters::STREAM_RATE_PARAMETERS;
 use super::suggestion::suggestion;
 use super::surroundings_parameters::{ARDUPILOT_SURROUNDINGS, PX4_SURROUNDINGS};
@@ -48,6 +49,7 @@ pub enum Change {
 #[derive(Clone, Debug)]
 pub struct ParameterTable {
     entries: Vec<Entry>,
+    is_ardupilot: bool,
 }
 
 impl ParameterTable {
@@ -75,13 +77,14 @@ impl ParameterTable {
         let mut entries: Vec<Entry> = of_loop
             .chain(of_conduct(identity))
             .chain(of_limits(ardupilot))
+            .chain(of_speeds(ardupilot))
             .chain(kept)
             .chain(others)
             .chain(also)
             .chain(of_statistics)
             .collect();
         entries.sort_by_key(|entry| entry.id);
-        Self { entries }
+        Self { entries, is_ardupilot: ardupilot }
     }
 
     /// The parameters in order.
@@ -144,6 +147,12 @@ impl ParameterTable {
             Source::Alias(_, parameter, scale) => {
                 set_alias(parameter, value, scale, &mut values.configuration).map(|()| Change::ClosedLoop)
             }
+            Source::BoundSpeed(parameter) => {
+                within(parameter.minimum, parameter.maximum, value).map(|value| {
+                    parameter.set(value, &mut values.conduct);
+                    Change::ClosedLoop
+                })
+            }
             Source::Kept(parameter, place) => {
                 set_kept(parameter, place, value, &mut values.conduct).map(|()| Change::Conduct)
             }
@@ -162,6 +171,9 @@ impl ParameterTable {
                 Change::Speed
             }),
         };
+        if change.is_some() && !self.is_ardupilot {
+            settle(values);
+        }
         change.ok_or_else(|| SetError::NotAllowed {
             name: name.to_owned(),
             value: entry.describe().shown(value),
@@ -263,6 +275,12 @@ fn of_conduct(identity: Identity) -> impl Iterator<Item = Entry> {
                 ..Entry::new(id, Source::Conduct(parameter, scale))
             })
         })
+}
+
+/// PX4's speeds that are bound to one another.
+fn of_speeds(ardupilot: bool) -> impl Iterator<Item = Entry> {
+    let speeds = if ardupilot { &[] } else { SPEED_PARAMETERS };
+    speeds.iter().map(|parameter| Entry::new(parameter.id, Source::BoundSpeed(parameter)))
 }
 
 /// The autopilots' names of limits that the closed loop has.

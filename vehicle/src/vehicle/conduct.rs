@@ -13,6 +13,7 @@ use super::orbit_request::OrbitSettings;
 use super::precision_settings::PrecisionSettings;
 use super::return_settings::ReturnSettings;
 use super::simulated::Simulated;
+use super::speed_settings::SpeedSettings;
 use super::stick_settings::StickSettings;
 use super::stream_rates::StreamRates;
 use super::surroundings_settings::SurroundingsSettings;
@@ -49,6 +50,9 @@ pub struct Conduct {
     /// Sink rate farther up, m/s; 0: the limit.
     #[serde(default)]
     pub land_fast_m_s: f64,
+    /// PX4's speeds beside those of automatic flight.
+    #[serde(default)]
+    pub speeds: SpeedSettings,
     /// Disarms this long after touch-down, s; not positive: never.
     pub disarm_after_landing_s: f64,
     /// Disarms when not taken off this long after arming, s; not positive: never.
@@ -208,6 +212,7 @@ impl Conduct {
             land_speed_m_s: 0.7,
             land_slow_below_m: two(),
             land_fast_m_s: 0.0,
+            speeds: SpeedSettings::default(),
             disarm_after_landing_s: 2.0,
             disarm_before_takeoff_s: 10.0,
             stick_speed_m_s: if ardupilot { 12.5 } else { 5.0 },

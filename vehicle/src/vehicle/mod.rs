@@ -119,6 +119,8 @@ mod simple_flight;
 mod simulated;
 mod situation;
 mod smart_return;
+mod speed_choice;
+mod speed_settings;
 mod speeds;
 mod spline;
 mod state;

@@ -35,6 +35,8 @@ use super::plans::KnownPlans;
 use super::settings::VehicleSettings;
 use super::setup::Setup;
 use super::situation::Situation;
+use super::speed_choice::SpeedChoice;
+use super::speeds::SpeedChange;
 use super::tick::{TICK_S, TICK_US};
 use crate::FlightError;
 use crate::estimation::{Estimate, Navigation, SensorModel};
@@ -96,6 +98,8 @@ impl Vehicle {
             machines,
         };
         vehicle.announce_plans();
+        let most_m_s = vehicle.conduct().speeds.most_m_s;
+        vehicle.use_speeds_or_say(vehicle.machines.speeds.within(most_m_s));
         vehicle
     }
 
@@ -177,12 +181,16 @@ impl Vehicle {
             self.closed_loop.release_limits();
         }
         let (situation, parts) = self.situation_and_machines();
+        let chosen = SpeedChoice::of(&situation, parts.mission.takes_off());
         let crossed = parts.fence.watch(&situation);
         parts.simple.watch(&situation);
         parts.failsafe.feel_wind(situation.wind_m_s.norm(), TICK_S);
         let missing = parts.failsafe.feel_battery(&situation);
         if let Some(text) = missing {
             self.decided.say(Severity::Critical, text);
+        }
+        if chosen != self.machines.speeds.chosen() {
+            self.use_speeds_or_say(self.machines.speeds.after(SpeedChange::Choose(chosen)));
         }
         if let Some(breach) = crossed {
             self.consult(|parts, situation, proposal| {

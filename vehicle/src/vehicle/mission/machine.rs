@@ -144,6 +144,12 @@ impl Mission {
         self.course.is_vertical()
     }
 
+    /// Whether it takes off, or will as its next step.
+    pub fn takes_off(&self) -> bool {
+        let next = self.program.navigate(self.current).filter(|_| self.progress != Progress::Complete);
+        self.is_vertical().0 || matches!(next, Some(Navigate::Takeoff { .. }))
+    }
+
     /// Starts, or goes on; `first` is the number of the step to begin with.
     ///
     /// # Errors

@@ -70,6 +70,9 @@ impl Vehicle {
         if kept != self.kept_configuration() {
             self.reconfigure(&kept)?;
         }
+        if conduct.speeds.most_m_s != self.conduct().speeds.most_m_s {
+            self.use_speeds(self.machines.speeds.within(conduct.speeds.most_m_s))?;
+        }
         self.setup.set_conduct(*conduct);
         let time_us = self.time_us();
         self.machines.pushes.change(&before.pushes, &conduct.simulated.pushes, time_us);
