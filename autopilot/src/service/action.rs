@@ -221,7 +221,7 @@ fn failed(refusal: Refusal) -> Refusal {
 /// PX4's altitude is above sea level, ArduPilot's above home; NaN stands for the parameter.
 fn take_off(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let vehicle = &mut context.vehicle;
-    if command.z.is_nan() {
+    if command.z.is_nan() && !vehicle.identity().is_ardupilot() {
         return vehicle.take_off(None);
     }
     if vehicle.identity().is_ardupilot() {
@@ -232,7 +232,9 @@ fn take_off(context: &mut Context, command: &Command) -> Result<(), Refusal> {
                 "Takeoff denied: frame {frame}; allowed 3 and 6, above home"
             )));
         }
-        return vehicle.take_off(Some(command.z)).map_err(failed);
+        let height_m = Some(command.z).filter(|height| !height.is_nan());
+        // A third parameter lets the pilot hold the place.
+        return vehicle.take_off_in_mode(height_m, command.parameter(3) == 0.0).map_err(failed);
     }
     let down_m = vehicle.site().down_m(global_frame(command)?, command.z, vehicle.horizontal_m());
     let height_m = vehicle.home().position_m.z - down_m;

@@ -7,6 +7,7 @@ use super::battery_pack::BatteryPack;
 use super::crash_settings::CrashSettings;
 use super::failsafe::FailsafeSettings;
 use super::follow_settings::FollowSettings;
+use super::ground_stations::GroundStations;
 use super::heading_policy::HeadingPolicy;
 use super::log_conduct::LogConduct;
 use super::orbit_request::OrbitSettings;
@@ -96,6 +97,9 @@ pub struct Conduct {
     /// Options of its automatic mode.
     #[serde(default)]
     pub auto_options: u8,
+    /// Which ground stations it listens to.
+    #[serde(default)]
+    pub ground_stations: GroundStations,
     /// How it turns into the wind.
     #[serde(default)]
     pub weathervane: WeathervaneSettings,
@@ -177,6 +181,10 @@ fn yes() -> bool {
 /// have it.
 const THRUST_AS_THRUST: u8 = 8;
 
+/// Of the options of the automatic mode.
+const AUTO_ARMS: u8 = 1;
+const AUTO_TAKES_OFF: u8 = 2;
+
 fn thrust_as_thrust() -> u8 {
     THRUST_AS_THRUST
 }
@@ -198,6 +206,16 @@ impl Conduct {
     /// Whether the thrust of attitudes is one in ArduPilot's guided mode, and no climb rate.
     pub fn thrust_is_asked_for(&self) -> bool {
         self.guided_options & THRUST_AS_THRUST != 0
+    }
+
+    /// Whether ArduPilot's automatic mode may be armed in.
+    pub fn auto_allows_arming(&self) -> bool {
+        self.auto_options & AUTO_ARMS != 0
+    }
+
+    /// Whether that mode takes off before anybody has raised the throttle.
+    pub fn auto_takes_off_by_itself(&self) -> bool {
+        self.auto_options & AUTO_TAKES_OFF != 0
     }
 
     /// The defaults, which differ by convention.
@@ -234,6 +252,7 @@ impl Conduct {
             told_loops: 0,
             guided_options: 0,
             auto_options: 0,
+            ground_stations: GroundStations::default(),
             weathervane: WeathervaneSettings::default(),
             zigzag_wait_s: 0.0,
             follow: FollowSettings::default(),

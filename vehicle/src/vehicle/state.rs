@@ -14,6 +14,7 @@ mod queries;
 mod reboot;
 mod requests;
 mod surroundings;
+mod takeoff_requests;
 
 use nalgebra::{Vector2, Vector3};
 use quadrotor::ConfigurationError;
@@ -181,6 +182,7 @@ impl Vehicle {
             self.closed_loop.release_limits();
         }
         let (situation, parts) = self.situation_and_machines();
+        parts.consent.watch(&situation);
         let chosen = SpeedChoice::of(&situation, parts.mission.takes_off());
         let crossed = parts.fence.watch(&situation);
         parts.simple.watch(&situation);
@@ -429,5 +431,8 @@ fn situation<'a>(
         ),
         has_trail: machines.smart_return.has_trail(),
         mission_goes_on: flies_mission && machines.mission.is_started(),
+        mission_may_take_off: !setup.identity().is_ardupilot()
+            || machines.consent.is_given()
+            || conduct.auto_takes_off_by_itself(),
     }
 }

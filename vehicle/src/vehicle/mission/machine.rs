@@ -1,5 +1,7 @@
 //! The mission as a machine: which step is flown, and what becomes of it.
 
+mod takeoffs;
+
 use nalgebra::Vector3;
 
 use super::super::heading_policy::{HeadingPolicy, Purpose};
@@ -142,12 +144,6 @@ impl Mission {
     /// Whether it climbs from the ground or descends to it.
     pub fn is_vertical(&self) -> (bool, bool) {
         self.course.is_vertical()
-    }
-
-    /// Whether it takes off, or will as its next step.
-    pub fn takes_off(&self) -> bool {
-        let next = self.program.navigate(self.current).filter(|_| self.progress != Progress::Complete);
-        self.is_vertical().0 || matches!(next, Some(Navigate::Takeoff { .. }))
     }
 
     /// Starts, or goes on; `first` is the number of the step to begin with.
@@ -308,6 +304,12 @@ impl Mission {
     pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) -> Helm {
         if self.paused || self.progress == Progress::Complete {
             proposal.turn_to_region(situation);
+            return Helm::Mission;
+        }
+        if situation.landed && !situation.mission_may_take_off {
+            if proposal.steering().kind() != SteeringKind::Idle {
+                proposal.idle(situation);
+            }
             return Helm::Mission;
         }
         let returned = self.course.returns();
