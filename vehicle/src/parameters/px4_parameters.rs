@@ -76,6 +76,7 @@ const GROUND_STATION_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::Return, 2, "Return"),
     (Action::Land, 3, "Land"),
     (Action::Terminate, 5, "Terminate"),
+    (Action::Disarm, 6, "Disarm"),
 ];
 const BATTERY_POLICIES: &[(BatteryActions, i32, &str)] = &[
     (BatteryActions::WARN, 0, "Warn"),

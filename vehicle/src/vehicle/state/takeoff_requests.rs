@@ -3,7 +3,8 @@
 use nalgebra::Vector3;
 
 use super::super::fence_watch::check_goal;
-use super::super::notice::Refusal;
+use super::super::notice::{Refusal, Severity};
+use super::super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::super::steering::SteeringKind;
 use super::Vehicle;
 use crate::mode::Mode;
@@ -36,6 +37,9 @@ impl Vehicle {
         if taking_off && goal_z_m.is_some_and(|goal| (goal - z).abs() < 0.01) {
             return Ok(());
         }
+        if flying && !situation.identity.is_ardupilot() {
+            return self.climb_on(z);
+        }
         if flying {
             return Err(Refusal::later("Takeoff rejected: already flying"));
         }
@@ -49,6 +53,26 @@ impl Vehicle {
         }
         self.enter(Mode::Takeoff);
         self.machines.takeoff.aim(z);
+        Ok(())
+    }
+
+    /// PX4 takes off in the air, too: it climbs to z, m, where it is, and stays at a greater height.
+    fn climb_on(&mut self, z_m: f64) -> Result<(), Refusal> {
+        self.may_enter(Mode::Takeoff)?;
+        let situation = self.situation();
+        let here_m = situation.steering.present(situation.outputs).position_m;
+        let is_higher = here_m.z < z_m;
+        self.machines.failsafe.release();
+        self.enter(Mode::Takeoff);
+        let goal_m = Vector3::new(here_m.x, here_m.y, z_m.min(here_m.z));
+        self.machines.takeoff.aim(goal_m.z);
+        self.consult(|_, situation, proposal| {
+            if is_higher {
+                proposal.say(Severity::Warning, "Already higher than takeoff altitude");
+            }
+            let axes = goal_m.data.0[0].map(AxisTarget::Position);
+            proposal.follow(situation, &PositionSetPoint { axes, yaw: YawTarget::Hold });
+        });
         Ok(())
     }
 
