@@ -3,12 +3,13 @@
 
 use std::vec::Drain;
 
+use mavlink::dialects::ardupilotmega::MavType;
 use quadrotor::ConfigurationError;
 use vehicle::identity::Identity;
 use vehicle::parameters::{FileFormat, ParameterTable, SPEED_PARAMETER, Speed, Value};
 use vehicle::{FlightError, LandedState, Pulses, Severity, TICK_US, Vehicle, VehicleSettings};
 
-use crate::codec::{Frame, Message, target_of};
+use crate::codec::{Frame, Message, id, target_of};
 use crate::context::Context;
 use crate::envelope::{Destination, LinkProfile, Origin, Outgoing, PeerId};
 use crate::file_store::Nothing;
@@ -142,6 +143,19 @@ impl Autopilot {
     /// How often it has booted.
     pub fn boots(&self) -> u32 {
         self.boots
+    }
+
+    /// Whether a frame shows that the ground station is there. PX4 knows one by its type, ArduPilot by its system id.
+    pub fn shows_ground_station(&self, frame: &Frame) -> bool {
+        const TYPE: usize = 4;
+        if self.identity().is_ardupilot() {
+            let stations = &self.context.vehicle.conduct().ground_stations;
+            let counts =
+                matches!(frame.message_id(), id::HEARTBEAT | id::MANUAL_CONTROL | id::RC_CHANNELS_OVERRIDE);
+            return counts && stations.include(frame.system());
+        }
+        let station = MavType::MAV_TYPE_GCS as u8;
+        frame.message_id() == id::HEARTBEAT && frame.payload().u8(TYPE) == station
     }
 
     /// Tells whether a ground station is heard: that is judged by the wall clock, which is outside.

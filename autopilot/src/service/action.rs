@@ -17,7 +17,7 @@ use crate::envelope::Origin;
 type CarryOut = fn(&mut Context, &Command) -> Result<(), Refusal>;
 
 /// Commands, and how they are carried out.
-const ACTIONS: [(MavCmd, CarryOut); 19] = [
+const ACTIONS: [(MavCmd, CarryOut); 20] = [
     (MavCmd::MAV_CMD_NAV_LOITER_UNLIM, loiter),
     (MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH, |context, _| context.vehicle.set_mode(Mode::Return)),
     (MavCmd::MAV_CMD_NAV_LAND, land),
@@ -28,6 +28,7 @@ const ACTIONS: [(MavCmd, CarryOut); 19] = [
     (MavCmd::MAV_CMD_DO_SET_HOME, set_home),
     (MavCmd::MAV_CMD_DO_FLIGHTTERMINATION, terminate),
     (MavCmd::MAV_CMD_DO_REPOSITION, reposition),
+    (MavCmd::MAV_CMD_DO_CHANGE_ALTITUDE, change_altitude),
     (MavCmd::MAV_CMD_DO_SET_ROI_LOCATION, look),
     (MavCmd::MAV_CMD_DO_SET_ROI_WPNEXT_OFFSET, look),
     (MavCmd::MAV_CMD_DO_SET_ROI_NONE, look),
@@ -221,7 +222,7 @@ fn failed(refusal: Refusal) -> Refusal {
 /// PX4's altitude is above sea level, ArduPilot's above home; NaN stands for the parameter.
 fn take_off(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     let vehicle = &mut context.vehicle;
-    if command.z.is_nan() {
+    if command.z.is_nan() && !vehicle.identity().is_ardupilot() {
         return vehicle.take_off(None);
     }
     if vehicle.identity().is_ardupilot() {
@@ -232,7 +233,9 @@ fn take_off(context: &mut Context, command: &Command) -> Result<(), Refusal> {
                 "Takeoff denied: frame {frame}; allowed 3 and 6, above home"
             )));
         }
-        return vehicle.take_off(Some(command.z)).map_err(failed);
+        let height_m = Some(command.z).filter(|height| !height.is_nan());
+        // A third parameter lets the pilot hold the place.
+        return vehicle.take_off_in_mode(height_m, command.parameter(3) == 0.0).map_err(failed);
     }
     let down_m = vehicle.site().down_m(global_frame(command)?, command.z, vehicle.horizontal_m());
     let height_m = vehicle.home().position_m.z - down_m;
@@ -303,6 +306,22 @@ fn reposition(context: &mut Context, command: &Command) -> Result<(), Refusal> {
     vehicle.reposition(&Reposition { horizontal_m, down_m, yaw_rad, is_above_ground })?;
     let speed_m_s = command.parameter(1);
     if speed_m_s > 0.0 { use_speed(vehicle, 1.0, speed_m_s) } else { Ok(()) }
+}
+
+/// PX4's: an altitude above sea level, whatever the frame says. It holds there.
+fn change_altitude(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    let vehicle = &mut context.vehicle;
+    if vehicle.identity().is_ardupilot() {
+        return Err(Refusal::Unsupported(
+            "DO_CHANGE_ALTITUDE is not supported: use DO_REPOSITION".to_owned(),
+        ));
+    }
+    let altitude_m = command.parameter(1);
+    if !altitude_m.is_finite() {
+        return Err(Refusal::denied("DO_CHANGE_ALTITUDE requires an altitude"));
+    }
+    let down_m = vehicle.site().down_m(plan::frame::GLOBAL, altitude_m, vehicle.horizontal_m());
+    vehicle.reposition(&Reposition { down_m: Some(down_m), ..Reposition::default() })
 }
 
 /// FAILURE_UNIT, FAILURE_TYPE, instance.

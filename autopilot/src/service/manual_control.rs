@@ -41,7 +41,12 @@ impl Service for ManualControl {
         STREAMS
     }
 
-    fn receive(&mut self, context: &mut Context, _origin: &Origin, frame: &Frame) {
+    fn receive(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
+        // ArduPilot is flown by its own ground station alone.
+        let stations = &context.vehicle.conduct().ground_stations;
+        if context.identity().is_ardupilot() && !stations.include(origin.system) {
+            return;
+        }
         match frame.message_id() {
             id::MANUAL_CONTROL => manual_control(context, frame),
             _ => channels_override(context, frame),

@@ -268,6 +268,9 @@ fn send_hash(context: &mut Context, to: Destination) {
 
 /// 0 reads, 1 writes, 2 resets the parameters.
 fn storage(context: &mut Context, command: &Command) -> Result<(), Refusal> {
+    if context.vehicle.is_armed() && !context.identity().is_ardupilot() {
+        return Err(Refusal::later("Parameter storage rejected: disarm first"));
+    }
     match command.parameter(1) {
         // They are read at the start, and always written when one changes.
         0.0 | 1.0 => Ok(()),

@@ -192,7 +192,7 @@ fn collision(encounter: &Encounter) -> MavMessage {
         src: MavCollisionSrc::MAV_COLLISION_SRC_ADSB,
         action: match encounter.action {
             Action::None => MavCollisionAction::MAV_COLLISION_ACTION_NONE,
-            Action::Hold | Action::BrakeOrLand | Action::Position | Action::Altitude => {
+            Action::Hold | Action::BrakeOrLand | Action::Position | Action::Altitude | Action::Stabilize => {
                 MavCollisionAction::MAV_COLLISION_ACTION_HOVER
             }
             Action::Return
@@ -200,7 +200,9 @@ fn collision(encounter: &Encounter) -> MavMessage {
             | Action::MissionLandingOrReturn
             | Action::TraceOrLand
             | Action::Land => MavCollisionAction::MAV_COLLISION_ACTION_RTL,
-            Action::Warn | Action::Terminate => MavCollisionAction::MAV_COLLISION_ACTION_REPORT,
+            Action::Warn | Action::Disarm | Action::Terminate => {
+                MavCollisionAction::MAV_COLLISION_ACTION_REPORT
+            }
         },
         threat_level: match encounter.threat {
             Threat::None => MavCollisionThreatLevel::MAV_COLLISION_THREAT_LEVEL_NONE,

@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
 use autopilot::Autopilot;
-use autopilot::codec::{Frame, id};
+use autopilot::codec::Frame;
 use autopilot::file_work::FileWorker;
 use vehicle::foreign::ForeignModel;
 use vehicle::parameters::{FileFormat, Speed};
@@ -191,9 +191,7 @@ impl Member {
 
     /// Takes in who is there.
     pub(super) fn hear(&mut self, frame: &Frame, now: Instant) {
-        const MAV_TYPE_GCS: u8 = 6;
-        const TYPE: usize = 4;
-        if frame.message_id() == id::HEARTBEAT && frame.payload().u8(TYPE) == MAV_TYPE_GCS {
+        if self.autopilot.shows_ground_station(frame) {
             let told = self.ground_station.is_some_and(|(_, told)| told);
             self.ground_station = Some((now, told));
         }

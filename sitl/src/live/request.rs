@@ -94,7 +94,14 @@ fn take_off(height_m: f64, autopilot: &Autopilot) -> Vec<MavMessage> {
 fn start_mission(autopilot: &Autopilot) -> Vec<MavMessage> {
     let system = autopilot.system_id();
     let start = to_autopilot(system, MavCmd::MAV_CMD_MISSION_START, [0.0; 7]);
-    if autopilot.vehicle().is_armed() { vec![start] } else { vec![arm(system, true), start] }
+    if autopilot.vehicle().is_armed() {
+        return vec![start];
+    }
+    // ArduPilot arms in another mode than that of the mission.
+    let guided = autopilot.identity().is_ardupilot() && autopilot.vehicle().mode() == Mode::Mission;
+    let custom = autopilot.identity().custom_mode(Mode::Offboard) as f32;
+    let mode = to_autopilot(system, MavCmd::MAV_CMD_DO_SET_MODE, [1.0, custom, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    guided.then_some(mode).into_iter().chain([arm(system, true), start]).collect()
 }
 
 fn fly_to(place_m: [f64; 2], height_m: f64, autopilot: &Autopilot) -> Result<MavMessage, String> {

@@ -38,7 +38,10 @@ const END_US: u64 = 30_000_000;
 /// with the same goals at the same times.
 #[test]
 fn the_flight_through_messages_is_that_of_the_library() {
-    let mut bench = Bench::new(Identity::Px4);
+    let mut vehicle = settings(Identity::Px4);
+    // The library knows no slow takeoffs.
+    vehicle.conduct.speeds.takeoff_m_s = vehicle.configuration.limits.speed_up_m_s;
+    let mut bench = Bench::of(&vehicle);
     bench.fly(1.0);
     let takeoff_us = bench.autopilot.vehicle().time_us();
     let start = bench.autopilot.vehicle().outputs().position_m;

@@ -35,7 +35,11 @@ fn every_action_as(identity: Identity, cause: Cause) {
         assert_eq!(announced, action != Action::None, "{cause:?} {action:?}: {texts:?}");
         match action {
             Action::None | Action::Warn => assert_eq!(vehicle.mode(), before, "{cause:?} {action:?}"),
-            Action::Terminate => assert!(!vehicle.is_armed(), "{cause:?} {action:?}"),
+            Action::Disarm | Action::Terminate => assert!(!vehicle.is_armed(), "{cause:?} {action:?}"),
+            // Nobody is there to take over.
+            Action::Altitude | Action::Stabilize if !identity.is_ardupilot() => {
+                assert_eq!(vehicle.mode(), Mode::Return, "{cause:?} {action:?}");
+            }
             // There is no mission with a landing.
             Action::MissionLandingOrReturn => assert_eq!(vehicle.mode(), Mode::Return, "{cause:?}"),
             _ => assert_eq!(Some(vehicle.mode()), action.mode(), "{cause:?} {action:?}: {texts:?}"),
@@ -128,7 +132,11 @@ fn the_documentation_draws_what_the_parameters_can_choose() {
         diagram.lines().map(str::trim).filter(|line| line.contains("-->") && !line.contains("[*]")).collect();
     drawn.sort_unstable();
     let mut meant: Vec<String> = ENDS.iter().map(|(edge, why)| format!("{edge} : {why}")).collect();
-    let goal = |action: Action| action.mode().map_or("Terminated".to_owned(), |mode| format!("{mode:?}"));
+    let goal = |action: Action| match action.mode() {
+        Some(mode) => format!("{mode:?}"),
+        None if action == Action::Disarm => "Disarmed".to_owned(),
+        None => "Terminated".to_owned(),
+    };
     let worse = || Action::ALL.into_iter().filter(|action| *action > Action::Warn);
     for to in worse().map(goal).collect::<BTreeSet<_>>() {
         let identities = [Identity::Px4, Identity::ArduPilot];

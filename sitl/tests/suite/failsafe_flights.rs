@@ -144,10 +144,36 @@ fn a_terminated_flight_is_told() {
 #[test]
 fn a_meaningless_choice_is_refused_with_those_that_there_are() {
     let mut bench = Bench::new(Identity::Px4);
-    bench.send(set_parameter_as("COM_ACT_FAIL_ACT", f32::from_bits(1), MavParamType::MAV_PARAM_TYPE_INT32));
+    bench.send(set_parameter_as("COM_ACT_FAIL_ACT", f32::from_bits(5), MavParamType::MAV_PARAM_TYPE_INT32));
     let told = bench.texts().pop().expect("a reason");
-    let reason = "COM_ACT_FAIL_ACT = 1; allowed 0 (Warn), 2 (Land), 4 (Terminate)";
+    let reason = "COM_ACT_FAIL_ACT = 5; allowed 0 (Warn), 1 (Hold), 2 (Land), 3 (Return), 4 (Terminate)";
     assert_eq!(told, reason);
+}
+
+/// COM_ACT_FAIL_ACT = 1 stays up on three rotors, until Land is asked for; 3 comes back to home and descends there.
+#[test]
+fn a_lost_rotor_may_hold_or_return() {
+    for (number, mode) in [(1.0, Mode::Hold), (3.0, Mode::Return)] {
+        let mut bench = hovering(Cause::RotorFailure);
+        set(&mut bench, "COM_ACT_FAIL_ACT", number);
+        spoil(&mut bench, Cause::RotorFailure);
+        bench.fly(20.0);
+        assert_eq!(bench.mode(), mode, "{:?}", bench.texts());
+        let height_m = -bench.position()[2];
+        assert!(height_m > 5.0, "{mode:?}: {height_m} m");
+        if mode == Mode::Hold {
+            let before = bench.position();
+            bench.fly(20.0);
+            let now = bench.position();
+            let moved_m = (0..3).map(|axis| (now[axis] - before[axis]).abs()).fold(0.0, f64::max);
+            assert!(moved_m < 1.5, "{before:?} {now:?}");
+            assert_eq!(bench.set_mode(Mode::Land), 0);
+        }
+        bench.fly_until("a landing", 90.0, |bench| !bench.autopilot.vehicle().is_armed());
+        let [x, y, z] = bench.position();
+        assert!(z.abs() < 0.5, "{mode:?}: {z}");
+        assert!(mode == Mode::Hold || x.hypot(y) < 3.0, "home: {x} {y}");
+    }
 }
 
 /// Nothing is flown for it: its mode stays, and under the control for four three rotors tip it over. Measured: 11 m/s at the ground.

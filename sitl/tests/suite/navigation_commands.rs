@@ -245,3 +245,52 @@ fn messages_are_those_of_the_identity() {
         assert_eq!(bench.heard.iter().find_map(state), Some(expected));
     }
 }
+
+/// The altitude of the tests' home above sea level, m.
+const HOME_M: f32 = 488.0;
+
+fn height_m(bench: &Bench) -> f64 {
+    -bench.position()[2]
+}
+
+/// PX4 climbs from where it flies; below the vehicle it stays.
+#[test]
+fn px4_takes_off_in_flight_too() {
+    let takeoff = |height_m: f32| [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, HOME_M + height_m];
+    let mut bench = Bench::hovering(Identity::Px4);
+    let before = bench.position();
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, takeoff(18.0)), 0);
+    assert_eq!(bench.mode(), Mode::Takeoff);
+    bench.fly_until("the height", 30.0, |bench| bench.mode() == Mode::Hold);
+    let [x, y, _] = bench.position();
+    assert!((height_m(&bench) - 18.0).abs() < 0.3, "{} m", height_m(&bench));
+    assert!((x - before[0]).hypot(y - before[1]) < 0.3, "{before:?} {x} {y}");
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, takeoff(5.0)), 0);
+    bench.fly(3.0);
+    assert!((height_m(&bench) - 18.0).abs() < 0.3, "{} m", height_m(&bench));
+    assert!(bench.texts().iter().any(|text| text == "Already higher than takeoff altitude"));
+}
+
+/// DO_CHANGE_ALTITUDE is PX4's: it goes to an altitude above sea level where it is, and holds.
+#[test]
+fn px4_changes_its_altitude() {
+    let mut bench = Bench::hovering(Identity::Px4);
+    let altitude = [HOME_M + 15.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_DO_CHANGE_ALTITUDE, altitude), 0);
+    bench.fly(10.0);
+    assert!((height_m(&bench) - 15.0).abs() < 0.2, "{} m", height_m(&bench));
+    assert_eq!(bench.mode(), Mode::Hold);
+    assert_eq!(bench.command(MavCmd::MAV_CMD_DO_CHANGE_ALTITUDE, [f32::NAN; 7]), DENIED);
+    let mut ardupilot = Bench::hovering(Identity::ArduPilot);
+    assert_eq!(ardupilot.command(MavCmd::MAV_CMD_DO_CHANGE_ALTITUDE, altitude), UNSUPPORTED);
+}
+
+/// PX4 touches no storage while it is armed.
+#[test]
+fn px4_stores_no_parameters_while_armed() {
+    const TEMPORARILY_REJECTED: u8 = 1;
+    let write = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let mut bench = Bench::hovering(Identity::Px4);
+    assert_eq!(bench.command(MavCmd::MAV_CMD_PREFLIGHT_STORAGE, write), TEMPORARILY_REJECTED);
+    assert_eq!(Bench::new(Identity::Px4).command(MavCmd::MAV_CMD_PREFLIGHT_STORAGE, write), 0);
+}

@@ -83,8 +83,8 @@ fn errors_name_the_file_the_place_the_value_and_its_range() {
         ("a.plan", replaced(PLAN, "[5, 2,", "[9, 2,"), "item 3: no item has doJumpId 9"),
         (
             "a.plan",
-            replaced(PLAN, r#""command": 20"#, r#""command": 84"#),
-            "item 4: NAV_VTOL_TAKEOFF (84): not supported",
+            replaced(PLAN, r#""command": 20"#, r#""command": 30"#),
+            "item 4: NAV_CONTINUE_AND_CHANGE_ALT (30): not supported",
         ),
         ("a.plan", replaced(PLAN, r#"[1.5, 0, 0, null,"#, "[1.5,"), "item 2: invalid length 4"),
         ("a.plan", replaced(PLAN, r#"Type": "Plan""#, r#"Type": "Parameters""#), "fileType is `Parameters`"),

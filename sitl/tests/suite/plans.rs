@@ -65,7 +65,7 @@ fn each_fault_has_its_result_and_names_its_item_and_the_old_plan_stays() {
     let with = |command: u16, parameters: [f64; 4]| MissionItem { command, parameters, ..good };
     let nan = f64::NAN;
     let cases: Vec<(MissionItem, MavMissionResult, &str)> = vec![
-        (with(84, [0.0; 4]), MavMissionResult::MAV_MISSION_UNSUPPORTED, "NAV_VTOL_TAKEOFF (84)"),
+        (with(30, [0.0; 4]), MavMissionResult::MAV_MISSION_UNSUPPORTED, "NAV_CONTINUE_AND_CHANGE_ALT (30)"),
         (with(60_000, [0.0; 4]), MavMissionResult::MAV_MISSION_UNSUPPORTED, "command 60000"),
         (with(5100, [0.0; 4]), MavMissionResult::MAV_MISSION_UNSUPPORTED, "NAV_RALLY_POINT (5100)"),
         (MissionItem { frame: 8, ..good }, MavMissionResult::MAV_MISSION_UNSUPPORTED_FRAME, "frame 8"),

@@ -359,7 +359,7 @@ fn a_lost_gps_is_told_and_its_return_is_smooth() {
 /// Fixes that jump by 10 m are not believed at first; after some seconds the vehicle goes with them, without a leap.
 #[test]
 fn a_gps_that_jumps_is_followed_late_and_gently() {
-    let mut bench = hovering(1);
+    let mut bench = hovering(2);
     bench.fly(5.0);
     let place = truth(&bench);
     inject(&mut bench, GPS, WRONG);

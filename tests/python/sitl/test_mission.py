@@ -172,5 +172,8 @@ def test_mavproxy_loads_lists_and_sets(start, connect, shell, tmp_path):  # noqa
     console.type("arm throttle")
     watcher.wait("HEARTBEAT", lambda beat: beat.base_mode & 128, 20)
     console.type("mode auto")
+    watcher.wait("HEARTBEAT", lambda beat: beat.custom_mode == 3)
+    # Without a raised throttle it waits on the ground, as ArduCopter does.
+    console.type("long MISSION_START 0 0 0 0 0 0 0")
     watcher.wait("MISSION_ITEM_REACHED", lambda item: item.seq == 2, 40)
     watcher.wait("HEARTBEAT", lambda beat: not beat.base_mode & 128, 60)

@@ -33,7 +33,7 @@ def run(program, *arguments, environment=None, timeout=60):
     (("--airframe", "/does/not/exist.toml"), 4, "cannot read /does/not/exist.toml"),
     (("--sped", "3"), 2, "'--speed' (see --help)"),
     (("--set", "FRAME_MASS=99"), 2, "--set: FRAME_MASS = 99 kg; allowed 0.005–50 kg"),
-    (("--set", "COM_ACT_FAIL_ACT=9"), 2, "COM_ACT_FAIL_ACT = 9; allowed 0 (Warn), 2 (Land), 4 (Terminate)"),
+    (("--set", "COM_ACT_FAIL_ACT=9"), 2, "COM_ACT_FAIL_ACT = 9; allowed 0 (Warn), 1 (Hold), 2 (Land), 3 (Return), 4 (Terminate)"),
     (("--set", "NO_SUCH=1"), 2, "--set: unknown parameter NO_SUCH; --list-parameters shows them all"),
     (("--set", "airframe.mas=1"), 2, "--set: unknown parameter airframe.mas; did you mean airframe.mass?"),
     (("--set", "airframe.mass=3"), 2, "airframe.mass = 3 kg is too heavy; allowed up to 1.78 kg, which these rotors carry; lower it, or raise airframe.rotor.speed_max"),

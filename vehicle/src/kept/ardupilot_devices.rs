@@ -199,9 +199,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("SCR_USER5", 0.0, -1000000.0..=1000000.0, "", "Value for scripts; there are none"),
         ("SCR_USER6", 0.0, -1000000.0..=1000000.0, "", "Value for scripts; there are none"),
     ], whole [
-        ("SYSID_MYGCS", 255, 1..=255, "", "System id of the ground station; every one counts"),
-        ("MAV_GCS_SYSID", 255, 1..=255, "", "System id of the ground station; every one counts"),
-        ("MAV_GCS_SYSID_HI", 0, 0..=255, "", "Last system id of ground stations; every one counts"),
         ("MAV_OPTIONS", 0, 0..=1, "", "Options of MAVLink"),
         ("MAV_TELEM_DELAY", 0, 0..=30, "s", "Delay of telemetry"),
         ("BATT_CURR_PIN", 12, -1..=115, "", "Pin of the current"),

@@ -38,12 +38,7 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("MPC_XY_ERR_MAX", 2.0, 0.1..=10.0, "m", "Position error at which trajectories stop"),
         ("THR_MDL_FAC", 0.0, 0.0..=1.0, "", "Thrust to motor signal model"),
     ], whole []),
-    kept!(Px4, "one limit holds in all modes: MPC_XY_CRUISE, MPC_Z_V_AUTO_UP, MPC_Z_V_AUTO_DN, MPC_ACC_HOR, MPC_ACC_UP_MAX, MPC_JERK_AUTO, MPC_TILTMAX_AIR", real [
-        ("MPC_XY_VEL_MAX", 12.0, 0.0..=20.0, "m/s", "Largest horizontal speed in all modes"),
-        ("MPC_Z_VEL_MAX_UP", 3.0, 0.5..=8.0, "m/s", "Largest climb rate in all modes"),
-        ("MPC_Z_VEL_MAX_DN", 1.5, 0.5..=4.0, "m/s", "Largest sink rate in all modes"),
-        ("MPC_XY_VEL_ALL", -10.0, -20.0..=20.0, "m/s", "Overall horizontal speed; negative leaves the others as they are"),
-        ("MPC_Z_VEL_ALL", -3.0, -3.0..=8.0, "m/s", "Overall vertical speed; negative leaves the others as they are"),
+    kept!(Px4, "one limit holds in all modes: MPC_ACC_HOR, MPC_ACC_UP_MAX, MPC_JERK_AUTO, MPC_TILTMAX_AIR", real [
         ("MPC_ACC_HOR_MAX", 5.0, 2.0..=15.0, "m/s^2", "Largest horizontal acceleration under sticks"),
         ("MPC_ACC_DOWN_MAX", 3.0, 2.0..=15.0, "m/s^2", "Largest downward acceleration"),
         ("MPC_JERK_MAX", 8.0, 0.5..=500.0, "m/s^3", "Largest jerk under sticks"),
@@ -59,12 +54,8 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
     ], whole [
         ("MPC_POS_MODE", 4, 0..=4, "", "Position mode's response to sticks"),
     ]),
-    kept!(Px4, "takeoffs and landings are shaped by the limits of speed and MPC_LAND_SPEED", real [
-        ("MPC_TKO_SPEED", 1.5, 1.0..=5.0, "m/s", "Takeoff climb rate"),
+    kept!(Px4, "takeoffs and landings are shaped by MPC_TKO_SPEED, MPC_LAND_SPEED and the limits of acceleration and jerk", real [
         ("MPC_TKO_RAMP_T", 3.0, 0.0..=5.0, "s", "Time over which a takeoff's thrust rises"),
-        ("MPC_LAND_CRWL", 0.3, 0.1..=10.0, "m/s", "Land crawl descent rate"),
-        ("MPC_LAND_ALT1", 10.0, 0.0..=122.0, "m", "Height at which a landing begins to slow down"),
-        ("MPC_LAND_ALT3", 1.0, 0.0..=122.0, "m", "Height from which a landing crawls"),
         ("COM_SPOOLUP_TIME", 1.0, 0.0..=30.0, "s", "Delay between arming and takeoff"),
         ("LNDMC_Z_VEL_MAX", 0.25, 0.0..=10.0, "m/s", "Vertical speed below which it may have landed"),
         ("LNDMC_XY_VEL_MAX", 1.5, 0.0..=10.0, "m/s", "Horizontal speed below which it may have landed"),

@@ -10,6 +10,8 @@ use crate::vehicle::{Action, Conduct, FenceDatum, FenceOptions, FenceParts, Fenc
 /// Parameters that ArduPilot has in place of those of PX4 with other numbers.
 #[rustfmt::skip] // One line per parameter reads as the table that it is.
 pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
+    whole!("MAV_GCS_SYSID", 1..=255, ground_stations.first, u8, "System id of the ground station whose heartbeats, overrides and MANUAL_CONTROL count").also(&[("SYSID_MYGCS", 1.0)]),
+    whole!("MAV_GCS_SYSID_HI", 0..=255, ground_stations.last, u8, "Last system id of such ground stations; less than MAV_GCS_SYSID: only that one"),
     switch!("FENCE_ENABLE", failsafe.fence_enabled, "Enable the fence"),
     bitmask!("FENCE_TYPE", FENCE_PARTS, failsafe.fence_parts, bits, parts, "Enabled parts of the fence"),
     bitmask!("FENCE_OPTIONS", FENCE_OPTIONS, failsafe.fence_options, option_bits, options, "Options of the fence"),

@@ -37,10 +37,13 @@ pub static CONDUCT_PARAMETERS: &[ConductParameter] = &[
 /// PX4's numbers of the actions of each parameter.
 const SET_POINTS_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::Position, 0, "Position mode"),
+    (Action::Altitude, 1, "Altitude mode"),
+    (Action::Stabilize, 2, "Stabilized mode"),
     (Action::Return, 3, "Return"),
     (Action::Land, 4, "Land"),
     (Action::Hold, 5, "Hold"),
     (Action::Terminate, 6, "Terminate"),
+    (Action::Disarm, 7, "Disarm"),
 ];
 pub(super) const FENCE_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::None, 0, "Nothing"),
@@ -50,5 +53,10 @@ pub(super) const FENCE_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::Terminate, 4, "Terminate"),
     (Action::Land, 5, "Land"),
 ];
-const ROTOR_ACTIONS: &[(Action, i32, &str)] =
-    &[(Action::Warn, 0, "Warn"), (Action::Land, 2, "Land"), (Action::Terminate, 4, "Terminate")];
+const ROTOR_ACTIONS: &[(Action, i32, &str)] = &[
+    (Action::Warn, 0, "Warn"),
+    (Action::Hold, 1, "Hold"),
+    (Action::Land, 2, "Land"),
+    (Action::Return, 3, "Return"),
+    (Action::Terminate, 4, "Terminate"),
+];

@@ -6,7 +6,7 @@ use super::entry::Source;
 use super::limit_names::LimitName;
 use super::loop_names::loop_name;
 use super::named_value::SWITCH;
-use super::{ConductParameter, Entry, NamedValue, Statistic};
+use super::{ConductParameter, Entry, NamedValue, SpeedParameter, Statistic};
 use crate::kept::KeptParameter;
 
 /// A parameter in words.
@@ -61,6 +61,7 @@ impl Entry {
             Source::Loop(parameter) => describe_loop(parameter),
             Source::Conduct(parameter, scale) => describe_conduct(parameter, scale),
             Source::Alias(name, parameter, scale) => describe_alias(name, parameter, scale),
+            Source::BoundSpeed(parameter) => describe_speed(parameter),
             Source::Kept(parameter, _) => describe_kept(parameter),
             Source::SystemId => Description {
                 text: "MAVLink system id; set at the start".to_owned(),
@@ -150,6 +151,19 @@ fn describe_alias(name: &LimitName, parameter: &Parameter, scale: f64) -> Descri
     let text =
         format!("{}; the same as {}", name.text, loop_name(name.dotted).map_or(name.dotted, |own| own.id));
     Description { text, range, ..known }
+}
+
+fn describe_speed(parameter: &SpeedParameter) -> Description {
+    Description {
+        text: parameter.text.to_owned(),
+        range: ValueRange { minimum: parameter.minimum, maximum: parameter.maximum, unit: "m/s" },
+        whole: false,
+        names: Vec::new(),
+        bits: &[],
+        group: "Vehicle",
+        needs_restart: false,
+        read_only: false,
+    }
 }
 
 fn describe_kept(parameter: &KeptParameter) -> Description {

@@ -5,7 +5,7 @@ use quadrotor::Parameter;
 use super::limit_names::LimitName;
 use super::loop_access::{number, read};
 use super::loop_names::LoopName;
-use super::{ConductParameter, ParameterValues, Statistic, Value};
+use super::{ConductParameter, ParameterValues, SpeedParameter, Statistic, Value};
 use crate::kept::KeptParameter;
 
 /// Where a parameter lives.
@@ -17,6 +17,8 @@ pub(super) enum Source {
     Conduct(&'static ConductParameter, f64),
     /// In the closed loop, by another name than ours.
     Alias(&'static LimitName, &'static Parameter, f64),
+    /// A speed of PX4's that is bound to others.
+    BoundSpeed(&'static SpeedParameter),
     /// Kept, without effect, at a place.
     Kept(&'static KeptParameter, usize),
     /// System id: set at the start.
@@ -75,7 +77,14 @@ impl Entry {
 
     /// Whether it belongs to the vehicle, not to the run, and may be in a file.
     pub(super) fn is_of_vehicle(&self) -> bool {
-        matches!(self.source, Source::Loop(_) | Source::Conduct(..) | Source::Alias(..) | Source::Kept(..))
+        matches!(
+            self.source,
+            Source::Loop(_)
+                | Source::Conduct(..)
+                | Source::Alias(..)
+                | Source::BoundSpeed(_)
+                | Source::Kept(..)
+        )
     }
 
     /// The flag of the program that sets a parameter of the run, rather than of the vehicle.
@@ -111,6 +120,7 @@ impl Entry {
                 let value = values.conduct.kept.get(place).unwrap_or(parameter.default);
                 if parameter.integer { Value::Integer(value as i32) } else { Value::Real(value) }
             }
+            Source::BoundSpeed(parameter) => Value::Real(parameter.get(values) as f32),
             Source::SystemId => Value::Integer(i32::from(values.system_id)),
             Source::Speed => Value::Real(values.speed.to_parameter() as f32),
             Source::Statistic(statistic) => {

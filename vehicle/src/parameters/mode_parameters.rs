@@ -86,7 +86,7 @@ pub static ARDUPILOT_MODE_PARAMETERS: &[ConductParameter] = &[
     degrees!("CIRCLE_RATE", -90.0..=90.0, orbit.rate_rad_s, "deg/s", "Rate of the circle mode; negative is counter-clockwise"),
     bitmask!("CIRCLE_OPTIONS", CIRCLE_OPTIONS, orbit.options, u32::from, options, "Options of the circle mode"),
     bitmask!("GUID_OPTIONS", GUIDED_OPTIONS, guided_options, u32::from, options, "Options of the guided mode"),
-    bitmask!("AUTO_OPTIONS", AUTO_OPTIONS, auto_options, u32::from, options, "Options of Auto; arming and taking off in it are always allowed"),
+    bitmask!("AUTO_OPTIONS", AUTO_OPTIONS, auto_options, u32::from, options, "Options of Auto: value 1 allows arming in it, 2 lets it take off before the throttle is raised, 4 ignores the yaw stick, 128 turns into the wind"),
     real!("PILOT_TKO_ALT_M", Some(("PILOT_TKOFF_ALT", 100.0)), 0.0..=10.0, pilot_takeoff_m, "m", "Height above the ground to which a manual takeoff continues by itself; 0: it does not").also(&[("PILOT_TKO_ALT_M", 1.0)]),
     bitmask!("PILOT_THR_BHV", THROTTLE, sticks.throttle_behaviour, u32::from, options, "Further functions of the throttle: value 2 lets a throttle above 70 % break off a landing, 4 disarms soon after a manual landing, otherwise after DISARM_DELAY; 1 has no effect"),
     switch!("LAND_REPOSITION", sticks.move_landings, "Sticks move the place of a landing and turn the nose on the way down"),

@@ -34,6 +34,10 @@ pub static PX4_PARAMETERS: &[ConductParameter] = &[
     real!("GF_MAX_HOR_DIST", None, 0.0..=100_000.0, failsafe.fence_radius_m, "m", "Radius of the fence around home; 0 disables it"),
     real!("GF_MAX_VER_DIST", None, 0.0..=10_000.0, failsafe.fence_height_m, "m", "Height of the fence above home; 0 disables it"),
     choice!("GF_ACTION", FENCE_ACTIONS, failsafe.fence, "Action at the fence"),
+    real!("MPC_TKO_SPEED", None, 0.0..=5.0, speeds.takeoff_m_s, "m/s", "Climb rate of a takeoff below MPC_LAND_ALT1"),
+    real!("MPC_LAND_ALT1", None, 0.0..=122.0, speeds.slow_below_m, "m", "Height above the ground below which a landing slows down and a takeoff climbs with MPC_TKO_SPEED"),
+    real!("MPC_LAND_ALT3", None, 0.0..=122.0, speeds.crawl_below_m, "m", "Height that a rangefinder shows below which a landing sinks with MPC_LAND_CRWL"),
+    real!("MPC_LAND_CRWL", None, 0.1..=10.0, speeds.crawl_m_s, "m/s", "Sink rate of a landing below MPC_LAND_ALT3"),
     real!("FD_FAIL_R", None, 0.0..=180.0, crash.roll_rad, DEGREES, "deg", "Roll that counts as a failure; 0 disables it"),
     real!("FD_FAIL_P", None, 0.0..=180.0, crash.pitch_rad, DEGREES, "deg", "Pitch that counts as a failure; 0 disables it"),
     real!("FD_FAIL_R_TTRI", None, 0.02..=5.0, crash.roll_s, "s", "Time that the roll must last to count as a failure"),
@@ -72,6 +76,7 @@ const GROUND_STATION_ACTIONS: &[(Action, i32, &str)] = &[
     (Action::Return, 2, "Return"),
     (Action::Land, 3, "Land"),
     (Action::Terminate, 5, "Terminate"),
+    (Action::Disarm, 6, "Disarm"),
 ];
 const BATTERY_POLICIES: &[(BatteryActions, i32, &str)] = &[
     (BatteryActions::WARN, 0, "Warn"),

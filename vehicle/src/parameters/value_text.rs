@@ -58,7 +58,7 @@ mod tests {
             (
                 "NAV_DLL_ACT",
                 "true",
-                "NAV_DLL_ACT = true; allowed 0 (Nothing), 1 (Hold), 2 (Return), 3 (Land), 5 (Terminate)",
+                "NAV_DLL_ACT = true; allowed 0 (Nothing), 1 (Hold), 2 (Return), 3 (Land), 5 (Terminate), 6 (Disarm)",
             ),
             ("controller.knid", "dlqr", "unknown parameter controller.knid; did you mean controller.kind?"),
         ] {

@@ -81,6 +81,11 @@ static MISSION_COMMANDS: &[MissionCommand] = &[
         (4, "yaw", ANGLE.0, ANGLE.1)] },
     MissionCommand { number: NAV_TAKEOFF, step: takeoff, place: PlaceRule::Goal, needed: &[], whole: &[], ranges: &[
         (4, "yaw", ANGLE.0, ANGLE.1)] },
+    // Without wings they are the same.
+    MissionCommand { number: NAV_VTOL_LAND, step: land, place: PlaceRule::Ground, needed: &[], whole: &[], ranges: &[
+        (4, "yaw", ANGLE.0, ANGLE.1)] },
+    MissionCommand { number: NAV_VTOL_TAKEOFF, step: takeoff, place: PlaceRule::Goal, needed: &[], whole: &[], ranges: &[
+        (4, "yaw", ANGLE.0, ANGLE.1)] },
     MissionCommand { number: NAV_LOITER_TO_ALT, step: |source| Step::Navigate(Navigate::LoiterToAltitude { place: source.place() }),
         place: PlaceRule::Goal, needed: &[7], whole: &[], ranges: &[(2, "radius", -WIDEST_M, WIDEST_M)] },
     MissionCommand { number: NAV_SPLINE_WAYPOINT, step: spline, place: PlaceRule::Goal, needed: &[], whole: &[], ranges: &[

@@ -7,12 +7,14 @@ use super::battery_pack::BatteryPack;
 use super::crash_settings::CrashSettings;
 use super::failsafe::FailsafeSettings;
 use super::follow_settings::FollowSettings;
+use super::ground_stations::GroundStations;
 use super::heading_policy::HeadingPolicy;
 use super::log_conduct::LogConduct;
 use super::orbit_request::OrbitSettings;
 use super::precision_settings::PrecisionSettings;
 use super::return_settings::ReturnSettings;
 use super::simulated::Simulated;
+use super::speed_settings::SpeedSettings;
 use super::stick_settings::StickSettings;
 use super::stream_rates::StreamRates;
 use super::surroundings_settings::SurroundingsSettings;
@@ -49,6 +51,9 @@ pub struct Conduct {
     /// Sink rate farther up, m/s; 0: the limit.
     #[serde(default)]
     pub land_fast_m_s: f64,
+    /// PX4's speeds beside those of automatic flight.
+    #[serde(default)]
+    pub speeds: SpeedSettings,
     /// Disarms this long after touch-down, s; not positive: never.
     pub disarm_after_landing_s: f64,
     /// Disarms when not taken off this long after arming, s; not positive: never.
@@ -92,6 +97,9 @@ pub struct Conduct {
     /// Options of its automatic mode.
     #[serde(default)]
     pub auto_options: u8,
+    /// Which ground stations it listens to.
+    #[serde(default)]
+    pub ground_stations: GroundStations,
     /// How it turns into the wind.
     #[serde(default)]
     pub weathervane: WeathervaneSettings,
@@ -173,6 +181,10 @@ fn yes() -> bool {
 /// have it.
 const THRUST_AS_THRUST: u8 = 8;
 
+/// Of the options of the automatic mode.
+const AUTO_ARMS: u8 = 1;
+const AUTO_TAKES_OFF: u8 = 2;
+
 fn thrust_as_thrust() -> u8 {
     THRUST_AS_THRUST
 }
@@ -196,6 +208,16 @@ impl Conduct {
         self.guided_options & THRUST_AS_THRUST != 0
     }
 
+    /// Whether ArduPilot's automatic mode may be armed in.
+    pub fn auto_allows_arming(&self) -> bool {
+        self.auto_options & AUTO_ARMS != 0
+    }
+
+    /// Whether that mode takes off before anybody has raised the throttle.
+    pub fn auto_takes_off_by_itself(&self) -> bool {
+        self.auto_options & AUTO_TAKES_OFF != 0
+    }
+
     /// The defaults, which differ by convention.
     pub fn new(ardupilot: bool) -> Self {
         Self {
@@ -208,6 +230,7 @@ impl Conduct {
             land_speed_m_s: 0.7,
             land_slow_below_m: two(),
             land_fast_m_s: 0.0,
+            speeds: SpeedSettings::default(),
             disarm_after_landing_s: 2.0,
             disarm_before_takeoff_s: 10.0,
             stick_speed_m_s: if ardupilot { 12.5 } else { 5.0 },
@@ -229,6 +252,7 @@ impl Conduct {
             told_loops: 0,
             guided_options: 0,
             auto_options: 0,
+            ground_stations: GroundStations::default(),
             weathervane: WeathervaneSettings::default(),
             zigzag_wait_s: 0.0,
             follow: FollowSettings::default(),

@@ -51,6 +51,7 @@ pub fn descend(situation: &Situation, proposal: &mut Proposal, above: Option<[f6
     let speed = (slow
         + approach(height_m - situation.conduct.land_slow_below_m, slowing_per_s, braking_m_s2))
     .clamp(slow, fastest);
+    let speed = speed.min(near_ground_m_s(situation, height_m, fastest));
     let speed = if waits_above(situation) && !situation.landing_is_moved { 0.0 } else { speed };
     let [x, y] = match (landing_pilot::velocity_m_s(situation), above) {
         (Some(velocity), _) => velocity.map(AxisTarget::Velocity),
@@ -59,6 +60,23 @@ pub fn descend(situation: &Situation, proposal: &mut Proposal, above: Option<[f6
     };
     let axes = [x, y, AxisTarget::Velocity(speed)];
     proposal.follow(situation, &PositionSetPoint { axes, yaw: YawTarget::Hold });
+}
+
+/// How fast PX4 sinks at most at a height, m, on a way down with `fastest_m_s`: slower from a height on, and slowest where a rangefinder
+/// shows the ground.
+fn near_ground_m_s(situation: &Situation, height_m: f64, fastest_m_s: f64) -> f64 {
+    if situation.identity.is_ardupilot() {
+        return fastest_m_s;
+    }
+    let (conduct, speeds) = (situation.conduct, &situation.conduct.speeds);
+    let seen_m = situation.surface.map(|surface| surface.z_m - situation.outputs.position_m.z);
+    if seen_m.is_some_and(|seen_m| seen_m <= speeds.crawl_below_m) {
+        return speeds.crawl_m_s;
+    }
+    let (low_m, slow_m_s) = (conduct.land_slow_below_m, conduct.land_speed_m_s);
+    let way_m = speeds.slow_below_m - low_m;
+    let share = if way_m > 0.0 { ((height_m - low_m) / way_m).clamp(0.0, 1.0) } else { 1.0 };
+    slow_m_s + share * (fastest_m_s - slow_m_s)
 }
 
 /// Whether it is too far beside its target to sink.

@@ -78,10 +78,17 @@ fn possible(situation: &Situation, action: Action) -> Action {
     let action = match action {
         Action::TraceOrReturn if !situation.has_trail => Action::Return,
         Action::TraceOrLand if !situation.has_trail => Action::Land,
+        // Without a pilot nobody would fly it.
+        Action::Altitude | Action::Stabilize if needs_pilot(situation) => Action::Return,
         action => action,
     };
     let flown = |mode: Mode| mode == Mode::Land || situation.can_fly(mode);
     if action.mode().is_none_or(flown) { action } else { Action::Land }
+}
+
+/// Whether PX4 has no pilot to hand over to.
+fn needs_pilot(situation: &Situation) -> bool {
+    !situation.identity.is_ardupilot() && situation.pilot.present_sticks().is_none()
 }
 
 /// Whether the present mode is one that COM_RCL_EXCEPT lets go on without the pilot.
@@ -198,6 +205,19 @@ mod tests {
         assert_eq!(asked(Action::BrakeOrLand, true, true), Action::BrakeOrLand);
         assert_eq!(asked(Action::BrakeOrLand, true, false), Action::Land);
         assert_eq!(asked(Action::Terminate, true, false), Action::Terminate);
+    }
+
+    /// PX4 hands over to a pilot who is there, and flies home without one.
+    #[test]
+    fn only_a_pilot_takes_over() {
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+        for action in [Action::Altitude, Action::Stabilize] {
+            scene.conduct.failsafe.set_points_lost = action;
+            scene.pilot.sticks = None;
+            assert_eq!(response(&scene.situation(), Cause::SetPointsLost).action, Action::Return);
+            scene.pilot.sticks = Some(crate::vehicle::Sticks::default());
+            assert_eq!(response(&scene.situation(), Cause::SetPointsLost).action, action);
+        }
     }
 
     /// On the ground it does not fly home.

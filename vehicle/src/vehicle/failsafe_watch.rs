@@ -107,6 +107,7 @@ impl Failsafe {
             Some(mode) if mode == situation.mode && mode != Mode::Mission => {}
             Some(Mode::Mission) => proposal.join_landing(),
             Some(mode) => proposal.enter(mode),
+            None if action == Action::Disarm => proposal.stop_rotors("Disarmed by failsafe"),
             None => proposal.terminate(),
         }
     }

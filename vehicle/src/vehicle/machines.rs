@@ -40,6 +40,7 @@ use super::stick_climb::StickClimb;
 use super::stick_flight::StickFlight;
 use super::takeoff::Takeoff;
 use super::takeoff_check::TakeoffCheck;
+use super::takeoff_consent::TakeoffConsent;
 use super::throw::Throw;
 use super::traffic_watch::TrafficWatch;
 use super::vibration_watch::VibrationWatch;
@@ -86,6 +87,8 @@ pub struct Machines {
     pub climb: StickClimb,
     /// What the rotors have against one.
     pub takeoff_check: TakeoffCheck,
+    /// Whether a mission may take off.
+    pub consent: TakeoffConsent,
     /// Throws.
     pub throw: Throw,
     /// Flips.
@@ -181,6 +184,7 @@ impl Machines {
             takeoff: Takeoff::default(),
             climb: StickClimb::default(),
             takeoff_check: TakeoffCheck::default(),
+            consent: TakeoffConsent::default(),
             throw: Throw::default(),
             flip: Flip::default(),
             zigzag: ZigZag::default(),

@@ -10,7 +10,8 @@ use super::sticks::Sticks;
 
 /// One tick of the position mode. Without a pilot it goes on with what it does: how it came here decides by what.
 pub fn fly_by_velocity(climb: &mut StickClimb, situation: &Situation, proposal: &mut Proposal) {
-    let released = situation.pilot.released.then(Sticks::default);
+    // Without a pilot a takeoff that was commanded goes on as with centred sticks.
+    let released = (situation.pilot.released || climb.takes_off()).then(Sticks::default);
     let Some(sticks) = situation.pilot.sticks.or(released) else { return };
     let outputs = situation.outputs;
     let yaw_rate = situation.limits().yaw_rate_rad_s;

@@ -17,6 +17,11 @@ pub struct PilotTakeoff {
 }
 
 impl PilotTakeoff {
+    /// A command leads to z, m.
+    pub fn aim(&mut self, z_m: f64) {
+        self.goal_z_m = Some(z_m);
+    }
+
     /// Whether one goes on.
     pub fn goes_on(&self) -> bool {
         self.goal_z_m.is_some()

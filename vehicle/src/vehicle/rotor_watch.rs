@@ -1,6 +1,6 @@
 //! The loss of a rotor: found by the rotors' measured speeds, told, and flown down without yaw control.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 use quadrotor::{PositionReference, RotorMonitor};
 
 use super::failsafe::Action;
@@ -9,6 +9,8 @@ use super::notice::Severity;
 use super::proposal::Proposal;
 use super::situation::Situation;
 use super::steering::Steering;
+use super::tick::TICK_S;
+use crate::mode::Mode;
 
 /// It keeps its height at first: until it spins it can neither brake nor stay upright.
 const SETTLING_US: u64 = 2_000_000;
@@ -24,16 +26,42 @@ const TOUCHING_M: f64 = 0.15;
 const TOUCHING_M_S: f64 = 0.2;
 const TOUCHED_US: u64 = 100_000;
 
+/// So near to home, m, it descends, and so fast it travels there, m/s.
+const HOME_M: f64 = 0.5;
+const TRAVELS_M_S: f64 = 1.0;
+
 /// A rotor that is known to be lost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Loss {
     rotor: usize,
     since_us: u64,
-    /// North and east, m, of where it descends.
+    /// North and east, m, of where it holds or descends.
     place_m: Option<[f64; 2]>,
+    /// z of where it holds, or flies home, m.
+    height_z_m: f64,
     touching_since_us: Option<u64>,
     /// Whether another one is lost, too: then no place can be held, and it sinks at once.
     falls: bool,
+}
+
+impl Loss {
+    /// Holds the height where the mode does: in place, or on the way home, m. Returns the velocity of that, m/s; `None`: it descends.
+    fn stay_up(&mut self, place_m: [f64; 2], situation: &Situation) -> Option<Vector3<f64>> {
+        match situation.mode {
+            Mode::Hold => Some(Vector3::zeros()),
+            Mode::Return => {
+                let way_m = situation.home.position_m.xy() - Vector2::from(place_m);
+                let distance_m = way_m.norm();
+                if distance_m <= HOME_M {
+                    return None;
+                }
+                let velocity_m_s = way_m * (TRAVELS_M_S / distance_m);
+                self.place_m = Some((Vector2::from(place_m) + velocity_m_s * TICK_S).into());
+                Some(Vector3::new(velocity_m_s.x, velocity_m_s.y, 0.0))
+            }
+            _ => None,
+        }
+    }
 }
 
 /// What is known of the rotors.
@@ -94,12 +122,18 @@ impl RotorWatch {
             return;
         }
         let alone = !self.is_another_lost(rotor);
-        let descends = alone && settings.rotor_failure == Action::Land;
-        let what = if descends { ": descending without yaw control" } else { "" };
+        let what = match settings.rotor_failure {
+            Action::Land if alone => ": descending without yaw control",
+            Action::Hold if alone => ": holding without yaw control",
+            Action::Return if alone => ": returning without yaw control",
+            _ => "",
+        };
         proposal.say(Severity::Critical, format!("Rotor {number} lost{what}"));
         let since_us = situation.time_us;
         // The failsafe sees it, and lands or terminates; if it only warns, the mode goes on with the rotors that are left.
-        self.loss = Some(Loss { rotor, since_us, place_m: None, touching_since_us: None, falls: false });
+        let height_z_m = situation.outputs.position_m.z;
+        self.loss =
+            Some(Loss { rotor, since_us, place_m: None, height_z_m, touching_since_us: None, falls: false });
     }
 
     /// One tick of the descent on the rotors that are left.
@@ -110,6 +144,7 @@ impl RotorWatch {
         let slow = now.velocity_m_s.xy().norm() < SLOW_M_S && lasting_us >= SETTLING_US;
         if loss.place_m.is_none() && (slow || lasting_us >= LONGEST_BRAKING_US) {
             loss.place_m = Some(now.position_m.xy().into());
+            loss.height_z_m = now.position_m.z;
         }
         let feet = situation.felt();
         let height_m = situation.true_ground_z_m() - feet.position_m.z;
@@ -127,7 +162,15 @@ impl RotorWatch {
             proposal.steer(Steering::Descent { lost_rotor: loss.rotor, reference });
             return;
         }
+        let leads_on = loss.place_m.and_then(|place_m| loss.stay_up(place_m, situation));
         let reference = match loss.place_m {
+            Some([x, y]) if leads_on.is_some() => {
+                let velocity_m_s = leads_on.unwrap_or_default();
+                PositionReference {
+                    velocity_m_s,
+                    ..at_rest(Vector3::new(x, y, loss.height_z_m), now.attitude_rad.z)
+                }
+            }
             Some([x, y]) => {
                 let landing = situation.conduct.land_speed_m_s;
                 let sink = landing + SLOWING_PER_S * (situation.ground_z_m() - now.position_m.z - 2.0);
@@ -145,7 +188,7 @@ impl RotorWatch {
 
 #[cfg(test)]
 mod tests {
-    use super::{RotorWatch, TOUCHED_US};
+    use super::{Mode, RotorWatch, TOUCHED_US};
     use crate::vehicle::failsafe::Action;
     use crate::vehicle::proposal::Request;
     use crate::vehicle::scene::{Scene, said};
@@ -181,6 +224,30 @@ mod tests {
         }
     }
 
+    /// It holds its height as long as its mode does; on the way home it moves on towards it, and sinks there.
+    #[test]
+    fn a_lost_rotor_holds_or_comes_home_where_its_mode_does() {
+        for (mode, velocity_m_s) in [(Mode::Hold, [0.0, 0.0, 0.0]), (Mode::Return, [-0.6, -0.8, 0.0])] {
+            let mut scene = Scene::hovering_at([3.0, 4.0, -10.0]);
+            let mut watch = RotorWatch::new(scene.outputs.rotor_speed_rad_s);
+            lose_a_rotor(&mut watch, &mut scene);
+            scene.mode = mode;
+            scene.wait_us(3_000_000);
+            descend(&mut watch, &mut scene);
+            let velocity = |scene: &Scene| match &scene.steering {
+                Steering::Descent { reference, .. } => reference.velocity_m_s,
+                other => panic!("{other:?}"),
+            };
+            let error = velocity(&scene) - nalgebra::Vector3::from(velocity_m_s);
+            assert!(error.norm() < 1e-9, "{mode:?}: {:?}", velocity(&scene));
+            for _ in 0..10_000 {
+                scene.wait_us(1_000);
+                descend(&mut watch, &mut scene);
+            }
+            assert_eq!(velocity(&scene).z > 0.5, mode == Mode::Return, "{mode:?}: {:?}", velocity(&scene));
+        }
+    }
+
     #[test]
     fn a_lost_rotor_is_told_and_flown_down() {
         let mut scene = Scene::hovering_at([3.0, 4.0, -10.0]);
@@ -188,6 +255,8 @@ mod tests {
         let requests = lose_a_rotor(&mut watch, &mut scene);
         assert_eq!(said(&requests), ["Rotor 2 lost: descending without yaw control"]);
         assert_eq!(watch.lost_rotor(), Some(1));
+        // Where the failsafe holds it does not sink; it lands here.
+        scene.mode = Mode::Land;
         // First it settles at its height, then it sinks.
         assert!(descend(&mut watch, &mut scene).is_empty());
         let sink_m_s = |scene: &Scene| match &scene.steering {

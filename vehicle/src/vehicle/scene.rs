@@ -186,6 +186,7 @@ impl Scene {
             pilot: self.pilot,
             has_trail: self.has_trail,
             mission_goes_on: self.mission_goes_on,
+            mission_may_take_off: true,
         }
     }
 

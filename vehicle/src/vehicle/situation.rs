@@ -110,6 +110,8 @@ pub struct Situation<'a> {
     pub has_trail: bool,
     /// Whether the mission goes on by itself on the ground.
     pub mission_goes_on: bool,
+    /// Whether a mission on the ground may take off: ArduPilot's waits for a raised throttle or a command.
+    pub mission_may_take_off: bool,
 }
 
 impl<'a> Situation<'a> {

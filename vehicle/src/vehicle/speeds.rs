@@ -3,10 +3,14 @@
 
 use quadrotor::{Configuration, Limits};
 
+use super::speed_choice::SpeedChoice;
 use crate::plan::{ChangeSpeed, SpeedKind, SpeedTarget};
 
-/// Place of the limit downwards.
+/// Places of the limits upwards and downwards.
+const UP: usize = 1;
 const DOWN: usize = 2;
+/// The closed loop has no limits of speed below this, m/s.
+const LEAST_M_S: f64 = 0.1;
 
 /// How limits of speed change.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +27,8 @@ pub enum SpeedChange {
     Return(Option<f64>),
     /// A landing may sink with a speed of its own, m/s, until its end.
     Landing(Option<f64>),
+    /// Something else is flown.
+    Choose(SpeedChoice),
 }
 
 /// Limits of speed, m/s: horizontally, up, down.
@@ -38,12 +44,18 @@ pub struct Speeds {
     by_landing_m_s: Option<f64>,
     /// Whether the mission is flown.
     in_mission: bool,
+    /// Largest ones in all modes, where they have been set.
+    most_m_s: [Option<f64>; 3],
+    chosen: SpeedChoice,
 }
 
 impl Speeds {
     /// The parameters' alone.
     pub fn new(limits: &Limits) -> Self {
+        let (most_m_s, chosen) = ([None; 3], SpeedChoice::default());
         Self {
+            most_m_s,
+            chosen,
             kept_m_s: of(limits),
             by_command_m_s: [None; 3],
             by_mission_m_s: [None; 3],
@@ -65,9 +77,26 @@ impl Speeds {
             let by_return = self.by_return_m_s.filter(|_| axis == 0);
             let limit_m_s =
                 by_mission.or(by_return).or(self.by_command_m_s[axis]).unwrap_or(self.kept_m_s[axis]);
+            let most_m_s = self.most_m_s[axis].map(|most_m_s| most_m_s.max(LEAST_M_S));
+            // Who leads may ask for all that there is.
+            let limit_m_s = most_m_s.filter(|_| self.chosen.is_led).unwrap_or(limit_m_s);
+            let by_takeoff = self.chosen.takeoff_m_s.filter(|_| axis == UP);
+            let limit_m_s =
+                by_takeoff.map_or(limit_m_s, |takeoff_m_s| limit_m_s.min(takeoff_m_s.max(LEAST_M_S)));
             let by_landing = self.by_landing_m_s.filter(|_| axis == DOWN);
-            by_landing.map_or(limit_m_s, |landing_m_s| limit_m_s.max(landing_m_s))
+            let limit_m_s = by_landing.map_or(limit_m_s, |landing_m_s| limit_m_s.max(landing_m_s));
+            most_m_s.map_or(limit_m_s, |most_m_s| limit_m_s.min(most_m_s))
         })
+    }
+
+    /// The same within others that hold in all modes, m/s.
+    pub fn within(self, most_m_s: [Option<f64>; 3]) -> Self {
+        Self { most_m_s, ..self }
+    }
+
+    /// What they are chosen for.
+    pub fn chosen(&self) -> SpeedChoice {
+        self.chosen
     }
 
     /// The same when parameters have been set: those that have changed hold at once.
@@ -94,6 +123,7 @@ impl Speeds {
             SpeedChange::ForgetCommands => self.by_command_m_s = [None; 3],
             SpeedChange::Return(speed_m_s) => self.by_return_m_s = speed_m_s,
             SpeedChange::Landing(speed_m_s) => self.by_landing_m_s = speed_m_s,
+            SpeedChange::Choose(chosen) => self.chosen = chosen,
         }
         self
     }
@@ -113,7 +143,7 @@ impl Speeds {
 fn asked(change: &ChangeSpeed) -> Option<(usize, Option<f64>)> {
     let axis = match change.kind {
         SpeedKind::Horizontal => 0,
-        SpeedKind::Up => 1,
+        SpeedKind::Up => UP,
         SpeedKind::Down => DOWN,
     };
     match change.target {
@@ -132,4 +162,30 @@ pub fn with_speeds(mut configuration: Configuration, speeds_m_s: [f64; 3]) -> Co
     let limits = &mut configuration.limits;
     [limits.speed_horizontal_m_s, limits.speed_up_m_s, limits.speed_down_m_s] = speeds_m_s;
     configuration
+}
+
+#[cfg(test)]
+mod tests {
+    use quadrotor::Limits;
+
+    use super::{SpeedChange, SpeedChoice, Speeds};
+    use crate::plan::{ChangeSpeed, SpeedKind, SpeedTarget};
+
+    /// PX4: automatic flight is never faster than the largest speeds; who leads by sticks or set-points may fly all of them.
+    #[test]
+    fn the_largest_speeds_bound_all_others() {
+        let limits =
+            Limits { speed_horizontal_m_s: 8.0, speed_up_m_s: 4.0, speed_down_m_s: 3.0, ..Limits::default() };
+        let speeds = Speeds::new(&limits);
+        assert_eq!(speeds.in_force(), [8.0, 4.0, 3.0]);
+        let bounded = speeds.within([Some(5.0), Some(9.0), Some(0.0)]);
+        assert_eq!(bounded.in_force(), [5.0, 4.0, 0.1]);
+        let faster = ChangeSpeed { kind: SpeedKind::Horizontal, target: SpeedTarget::Limit(7.0) };
+        assert_eq!(bounded.commanded(&faster).in_force()[0], 5.0, "a command is bounded, too");
+        let led = SpeedChoice { is_led: true, ..SpeedChoice::default() };
+        assert_eq!(bounded.after(SpeedChange::Choose(led)).in_force(), [5.0, 9.0, 0.1]);
+        assert_eq!(speeds.after(SpeedChange::Choose(led)).in_force(), [8.0, 4.0, 3.0], "nothing is set");
+        let takes_off = SpeedChoice { takeoff_m_s: Some(1.5), is_led: false };
+        assert_eq!(bounded.after(SpeedChange::Choose(takes_off)).in_force(), [5.0, 1.5, 0.1]);
+    }
 }

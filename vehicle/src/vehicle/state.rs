@@ -14,6 +14,7 @@ mod queries;
 mod reboot;
 mod requests;
 mod surroundings;
+mod takeoff_requests;
 
 use nalgebra::{Vector2, Vector3};
 use quadrotor::ConfigurationError;
@@ -35,6 +36,8 @@ use super::plans::KnownPlans;
 use super::settings::VehicleSettings;
 use super::setup::Setup;
 use super::situation::Situation;
+use super::speed_choice::SpeedChoice;
+use super::speeds::SpeedChange;
 use super::tick::{TICK_S, TICK_US};
 use crate::FlightError;
 use crate::estimation::{Estimate, Navigation, SensorModel};
@@ -96,6 +99,8 @@ impl Vehicle {
             machines,
         };
         vehicle.announce_plans();
+        let most_m_s = vehicle.conduct().speeds.most_m_s;
+        vehicle.use_speeds_or_say(vehicle.machines.speeds.within(most_m_s));
         vehicle
     }
 
@@ -177,12 +182,17 @@ impl Vehicle {
             self.closed_loop.release_limits();
         }
         let (situation, parts) = self.situation_and_machines();
+        parts.consent.watch(&situation);
+        let chosen = SpeedChoice::of(&situation, parts.mission.takes_off());
         let crossed = parts.fence.watch(&situation);
         parts.simple.watch(&situation);
         parts.failsafe.feel_wind(situation.wind_m_s.norm(), TICK_S);
         let missing = parts.failsafe.feel_battery(&situation);
         if let Some(text) = missing {
             self.decided.say(Severity::Critical, text);
+        }
+        if chosen != self.machines.speeds.chosen() {
+            self.use_speeds_or_say(self.machines.speeds.after(SpeedChange::Choose(chosen)));
         }
         if let Some(breach) = crossed {
             self.consult(|parts, situation, proposal| {
@@ -421,5 +431,8 @@ fn situation<'a>(
         ),
         has_trail: machines.smart_return.has_trail(),
         mission_goes_on: flies_mission && machines.mission.is_started(),
+        mission_may_take_off: !setup.identity().is_ardupilot()
+            || machines.consent.is_given()
+            || conduct.auto_takes_off_by_itself(),
     }
 }

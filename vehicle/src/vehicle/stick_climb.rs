@@ -18,6 +18,16 @@ impl StickClimb {
         *self = Self::default();
     }
 
+    /// A command takes off to z, m.
+    pub fn take_off(&mut self, z_m: f64) {
+        self.takeoff.aim(z_m);
+    }
+
+    /// Whether a takeoff goes on.
+    pub fn takes_off(&self) -> bool {
+        self.takeoff.goes_on()
+    }
+
     /// The climb rate that is flown in this tick where the pilot asks for one, m/s. Takeoffs follow no surface.
     pub fn climb_m_s(&mut self, situation: &Situation, asked_m_s: f64) -> f64 {
         let climb_m_s = self.takeoff.climb_m_s(situation, asked_m_s);

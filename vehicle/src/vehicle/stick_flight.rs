@@ -62,7 +62,11 @@ impl StickFlight {
 
     /// One tick of a mode in which the throttle is the climb rate.
     pub fn step_by_height(&mut self, climb: &mut StickClimb, situation: &Situation, proposal: &mut Proposal) {
-        let sticks = Self::sticks(situation);
+        let sticks = if climb.takes_off() {
+            situation.pilot.sticks.unwrap_or_default()
+        } else {
+            Self::sticks(situation)
+        };
         let climb_m_s = climb.climb_m_s(situation, sticks.climb_m_s(situation.conduct));
         if situation.landed && climb_m_s <= 0.0 {
             self.rest(situation, proposal);

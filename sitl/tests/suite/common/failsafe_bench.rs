@@ -166,6 +166,7 @@ pub fn state(bench: &Bench) -> MavState {
 pub fn expected_state(cause: Cause, action: Action) -> MavState {
     match action {
         Action::None | Action::Warn => MavState::MAV_STATE_ACTIVE,
+        Action::Disarm => MavState::MAV_STATE_STANDBY,
         Action::Terminate => MavState::MAV_STATE_FLIGHT_TERMINATION,
         _ if matches!(cause, Cause::RotorFailure | Cause::BatteryEmergency) => MavState::MAV_STATE_EMERGENCY,
         _ => MavState::MAV_STATE_CRITICAL,

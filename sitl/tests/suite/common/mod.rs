@@ -20,9 +20,10 @@ use vehicle::{Mode, VehicleSettings};
 
 pub const GROUND_STATION: (u8, u8) = (255, 190);
 
-/// Settings of a vehicle in Zurich whose units may be broken.
+/// Settings of a vehicle in Zurich whose units may be broken, and which ArduPilot's Auto may arm and take off.
 pub fn settings(identity: Identity) -> VehicleSettings {
     let mut settings = VehicleSettings::new(identity);
+    settings.conduct.auto_options = 3;
     settings.conduct.failure_injection = true;
     settings
 }

@@ -1,6 +1,7 @@
 //! What ArduCopter's own test suite flies, in our words: the same parameters, sticks, commands and bars.
 
 mod arming;
+mod auto_start;
 mod boot;
 mod equipment;
 mod estimation;

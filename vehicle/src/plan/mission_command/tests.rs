@@ -61,6 +61,8 @@ fn navigation() -> Vec<Case> {
         (NAV_LOITER_TIME, [12.0, 0.0, 5.0, 0.0], AT, Navigate::LoiterTime { place, time_s: 12.0 }),
         (NAV_RETURN_TO_LAUNCH, [0.0; 4], [0.0; 3], Navigate::ReturnToLaunch),
         (NAV_LAND, [0.0, 0.0, 0.0, NAN], [NAN; 3], Navigate::Land { place: Place::default(), heading_rad: None }),
+        (NAV_VTOL_LAND, [0.0, 0.0, 0.0, NAN], [NAN; 3], Navigate::Land { place: Place::default(), heading_rad: None }),
+        (NAV_VTOL_TAKEOFF, [0.0, 0.0, 0.0, NAN], AT, Navigate::Takeoff { place, travels: true }),
         (NAV_TAKEOFF, [15.0, 0.0, 0.0, 10.0], AT, Navigate::Takeoff { place, travels: true }),
         (NAV_LOITER_TO_ALT, [0.0, 25.0, 0.0, 0.0], AT, Navigate::LoiterToAltitude { place }),
         (NAV_SPLINE_WAYPOINT, [3.0, 0.0, 0.0, 0.0], AT, Navigate::Spline { place, hold_s: 3.0 }),

@@ -16,6 +16,8 @@ pub enum Action {
     Position,
     /// Hands over to the sticks, and holds its height.
     Altitude,
+    /// Hands over to the sticks, which lean it.
+    Stabilize,
     /// Holds its place.
     Hold,
     /// The same, or without a place lands.
@@ -31,16 +33,19 @@ pub enum Action {
     /// Lands where it is; without an estimate of its place level, by its sink rate.
     Land,
     /// Stops the rotors.
+    Disarm,
+    /// Stops the rotors, for good.
     Terminate,
 }
 
 impl Action {
     /// All actions.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::None,
         Self::Warn,
         Self::Position,
         Self::Altitude,
+        Self::Stabilize,
         Self::Hold,
         Self::BrakeOrLand,
         Self::Return,
@@ -48,15 +53,17 @@ impl Action {
         Self::MissionLandingOrReturn,
         Self::TraceOrLand,
         Self::Land,
+        Self::Disarm,
         Self::Terminate,
     ];
 
     /// The mode that carries it out, if nothing is missing for it; `None` for what is no mode.
     pub fn mode(self) -> Option<Mode> {
         match self {
-            Self::None | Self::Warn | Self::Terminate => None,
+            Self::None | Self::Warn | Self::Disarm | Self::Terminate => None,
             Self::Position => Some(Mode::Position),
             Self::Altitude => Some(Mode::Altitude),
+            Self::Stabilize => Some(Mode::Stabilize),
             Self::Hold | Self::BrakeOrLand => Some(Mode::Hold),
             Self::Return => Some(Mode::Return),
             Self::TraceOrReturn | Self::TraceOrLand => Some(Mode::SmartReturn),
@@ -81,7 +88,8 @@ impl Action {
             RadioLossAction::TraceOrLand => Self::TraceOrLand,
             RadioLossAction::MissionLandingOrReturn => Self::MissionLandingOrReturn,
             RadioLossAction::Land => Self::Land,
-            RadioLossAction::Terminate | RadioLossAction::Disarm => Self::Terminate,
+            RadioLossAction::Disarm => Self::Disarm,
+            RadioLossAction::Terminate => Self::Terminate,
         }
     }
 
@@ -102,11 +110,13 @@ impl Action {
             Self::Warn => "warning only",
             Self::Position => "switching to position mode",
             Self::Altitude => "switching to altitude mode",
+            Self::Stabilize => "switching to stabilized mode",
             Self::Hold | Self::BrakeOrLand => "holding",
             Self::Return => "returning",
             Self::TraceOrReturn | Self::TraceOrLand => "returning along its path",
             Self::MissionLandingOrReturn => "flying to the mission's landing",
             Self::Land => "landing",
+            Self::Disarm => "disarming",
             Self::Terminate => "stopping the rotors",
         }
     }

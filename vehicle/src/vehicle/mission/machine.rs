@@ -1,5 +1,7 @@
 //! The mission as a machine: which step is flown, and what becomes of it.
 
+mod takeoffs;
+
 use nalgebra::Vector3;
 
 use super::super::heading_policy::{HeadingPolicy, Purpose};
@@ -302,6 +304,12 @@ impl Mission {
     pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) -> Helm {
         if self.paused || self.progress == Progress::Complete {
             proposal.turn_to_region(situation);
+            return Helm::Mission;
+        }
+        if situation.landed && !situation.mission_may_take_off {
+            if proposal.steering().kind() != SteeringKind::Idle {
+                proposal.idle(situation);
+            }
             return Helm::Mission;
         }
         let returned = self.course.returns();

@@ -54,6 +54,11 @@ impl Vehicle {
         obstacles.extend(remote_id.map(ArmingObstacle::from));
         obstacles.extend(rotor_obstacles(self.faults().rotors()));
         let identity = situation.identity;
+        let in_auto = identity.is_ardupilot() && situation.mode == Mode::Mission;
+        if in_auto && !situation.conduct.auto_allows_arming() {
+            let text = format!("{} mode not armable", identity.mode_name(Mode::Mission));
+            obstacles.push(ArmingObstacle::new(Subject::Mode, text));
+        }
         match situation.mode {
             // ArduPilot's Hold is Brake, which ends a flight; PX4's begins one.
             Mode::Land | Mode::Return | Mode::SmartReturn | Mode::Orbit | Mode::Follow | Mode::Hold

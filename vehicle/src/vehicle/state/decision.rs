@@ -194,7 +194,7 @@ impl Vehicle {
         self.decided.say(Severity::Info, why);
     }
 
-    fn use_speeds_or_say(&mut self, speeds: Speeds) {
+    pub(super) fn use_speeds_or_say(&mut self, speeds: Speeds) {
         if let Err(error) = self.use_speeds(speeds) {
             self.decided.say(Severity::Warning, format!("Speed not changed: {error}"));
         }

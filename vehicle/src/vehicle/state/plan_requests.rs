@@ -78,6 +78,20 @@ impl Vehicle {
     /// # Errors
     /// [`Refusal`] without a mission, for one that the fence forbids, for an item that there is not, and when only landing is left.
     pub fn start_mission(&mut self, first: Option<usize>) -> Result<(), Refusal> {
+        self.enter_mission(first)?;
+        self.machines.consent.give();
+        Ok(())
+    }
+
+    /// The same without consent to a takeoff.
+    pub(super) fn enter_mission(&mut self, first: Option<usize>) -> Result<(), Refusal> {
+        let situation = self.situation();
+        let stands = situation.armed && situation.landed && situation.mode != Mode::Mission;
+        let restarts = situation.conduct.mission_restarts;
+        let takes_off = self.has_mission() && self.machines.mission.begins_with_takeoff(restarts);
+        if situation.identity.is_ardupilot() && stands && self.has_mission() && !takes_off {
+            return Err(Refusal::Failed("Auto: Missing Takeoff Cmd".to_owned()));
+        }
         self.fly_mission(first)?;
         self.machines.failsafe.release();
         Ok(())

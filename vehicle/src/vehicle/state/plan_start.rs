@@ -1,5 +1,6 @@
 //! The plans that the vehicle starts with.
 
+use super::super::arming_obstacle::ArmingSubject;
 use super::super::autostart::Step;
 use super::super::notice::Severity;
 use super::Vehicle;
@@ -17,6 +18,8 @@ impl Vehicle {
             count => {
                 let then = if self.machines.autostart.is_pending() {
                     "starting when ready".to_owned()
+                } else if identity.is_ardupilot() && !self.conduct().auto_allows_arming() {
+                    format!("arm, then start it in {} mode", identity.mode_name(Mode::Mission))
                 } else {
                     format!("arm in {} mode to start", identity.mode_name(Mode::Mission))
                 };
@@ -32,14 +35,21 @@ impl Vehicle {
         }
     }
 
+    /// Whether at most the mode itself speaks against arming: whoever asked for the start has chosen it.
+    fn could_arm_in_another_mode(&self) -> bool {
+        self.arming_obstacles().iter().all(|obstacle| obstacle.subject == ArmingSubject::Mode)
+    }
+
     /// Starts the mission of a vehicle that was told to start by itself.
     pub(super) fn autostart(&mut self) {
         let (time_us, armed) = (self.time_us(), self.is_armed());
         let in_mission_mode = self.mode() == Mode::Mission;
         let done = match self.machines.autostart.step(time_us, armed, in_mission_mode) {
             Step::None => Ok(()),
-            Step::EnterMission => self.start_mission(None),
-            Step::Arm if self.arming_obstacles().is_empty() => self.arm(false),
+            Step::EnterMission => self.enter_mission(None),
+            Step::Arm if self.could_arm_in_another_mode() => {
+                self.arm(true).map(|()| self.machines.consent.give())
+            }
             Step::Arm => Ok(()),
         };
         if let Err(refusal) = done {

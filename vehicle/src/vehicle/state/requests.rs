@@ -29,9 +29,6 @@ use crate::plan::step::Turn;
 use crate::plan::{ChangeSpeed, Look};
 use crate::world::wind_drag;
 
-/// Takeoffs end between these heights above home, m.
-const TAKEOFF_HEIGHT_M: core::ops::RangeInclusive<f64> = 0.5..=1000.0;
-
 impl Vehicle {
     /// Notices since the last call.
     pub fn take_notices(&mut self) -> Vec<Notice> {
@@ -69,6 +66,9 @@ impl Vehicle {
         };
         if kept != self.kept_configuration() {
             self.reconfigure(&kept)?;
+        }
+        if conduct.speeds.most_m_s != self.conduct().speeds.most_m_s {
+            self.use_speeds(self.machines.speeds.within(conduct.speeds.most_m_s))?;
         }
         self.setup.set_conduct(*conduct);
         let time_us = self.time_us();
@@ -197,7 +197,7 @@ impl Vehicle {
         }
         match mode {
             Mode::Takeoff => return self.take_off(None),
-            Mode::Mission => return self.start_mission(None),
+            Mode::Mission => return self.enter_mission(None),
             Mode::MissionLanding if !situation.flies() => {
                 return Err(Refusal::Failed("Auto RTL mode rejected: not flying".to_owned()));
             }
@@ -260,46 +260,6 @@ impl Vehicle {
         if situation.armed && situation.landed && by_thrust && leaps {
             return Err(Refusal::later(format!("{name} mode rejected: throttle too high")));
         }
-        Ok(())
-    }
-
-    /// Takes off to a height above home, m, or to that of the parameter; when it is armed, else as soon as it is
-    /// (ArduPilot: only when it is).
-    ///
-    /// # Errors
-    /// [`Refusal`] when it flies already or the height is no takeoff's.
-    pub fn take_off(&mut self, height_m: Option<f64>) -> Result<(), Refusal> {
-        let situation = self.situation();
-        situation.refuse_without_rotor()?;
-        let height_m = height_m.unwrap_or(situation.conduct.takeoff_height_m);
-        if !TAKEOFF_HEIGHT_M.contains(&height_m) {
-            let (low, high) = (TAKEOFF_HEIGHT_M.start(), TAKEOFF_HEIGHT_M.end());
-            return Err(Refusal::denied(format!(
-                "Takeoff denied: {height_m:.1} m above home is outside {low} to {high} m"
-            )));
-        }
-        let z = situation.home.position_m.z - height_m;
-        let here = situation.outputs.position_m;
-        check_goal(&situation, "Takeoff", &Vector3::new(here.x, here.y, z))?;
-        let flying = situation.steering.kind() != SteeringKind::Idle;
-        let taking_off = situation.mode == Mode::Takeoff && flying;
-        let goal_z_m = self.machines.takeoff.goal_z_m();
-        if taking_off && goal_z_m.is_some_and(|goal| (goal - z).abs() < 0.01) {
-            return Ok(());
-        }
-        if flying {
-            return Err(Refusal::later("Takeoff rejected: already flying"));
-        }
-        if situation.identity.is_ardupilot() {
-            if !situation.armed {
-                return Err(Refusal::Failed("Takeoff rejected: not armed".to_owned()));
-            }
-            if situation.mode != Mode::Offboard {
-                return Err(Refusal::Failed("Takeoff rejected: not in Guided mode".to_owned()));
-            }
-        }
-        self.enter(Mode::Takeoff);
-        self.machines.takeoff.aim(z);
         Ok(())
     }
 
