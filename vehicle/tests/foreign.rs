@@ -104,7 +104,7 @@ impl ForeignModel for OwnLoop {
         let inputs =
             Inputs { reference: demand.reference, armed: demand.armed, disturbance, ..Inputs::default() };
         self.simulation.advance_to(demand.time_us + demand.duration_us, &inputs)?;
-        let PlantState { body, rotor_speed_rad_s, .. } = *self.simulation.plant_state();
+        let PlantState { body, rotor_speed_rad_s, .. } = self.simulation.plant_state();
         Ok(ForeignMotion { body, rotor_speed_rad_s: Some(rotor_speed_rad_s), ..self.description.start })
     }
 }

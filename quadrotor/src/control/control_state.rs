@@ -1,5 +1,7 @@
 //! Everything that changes in a control loop, and one sample of it.
 
+mod watching;
+
 use serde::{Deserialize, Serialize};
 
 use crate::control::cascade::Cascade;
@@ -222,10 +224,7 @@ impl ControlState {
         instruments: &mut impl Instruments,
     ) -> Result<(), ControlError> {
         let time_us = self.next_us;
-        inputs.check(time_us)?;
-        if let Target::WithoutRotor { lost, .. } = inputs.target {
-            design.rotor_loss.of(lost)?;
-        }
+        check(design, inputs, time_us)?;
         let (due, sample_us) = if time_us < self.sample_us {
             (Due::NONE, self.sample_us)
         } else {
@@ -243,17 +242,6 @@ impl ControlState {
             (Err(_), None) => {}
         }
         advanced
-    }
-
-    /// Whether nothing but time goes on at its next instant under a reference: no controller samples, and it is shaped already.
-    pub(crate) fn waits(&self) -> bool {
-        let flies_a_reference = self.armed && !self.engage && self.law == ControlLaw::Cascade;
-        self.next_us < self.sample_us && flies_a_reference && self.guidance.is_shaped()
-    }
-
-    /// Goes on to the instant after the next one while it [waits](Self::waits).
-    pub(crate) fn wait(&mut self) {
-        self.next_us = Clocks::next_instant_us(self.next_us, self.sample_us);
     }
 
     /// Takes inputs in, and runs the controllers that are due. An error may leave it half done if it takes over a vehicle; else
@@ -398,8 +386,11 @@ impl ControlState {
             rotor_command_rad_s: &self.command.speed_rad_s,
             time_us,
         };
-        self.learned.observe(configuration, &sample);
-        self.believe(&believed, configuration)
+        if self.learned.observe(configuration, &sample) {
+            self.believe(&believed, configuration)
+        } else {
+            believed
+        }
     }
 
     /// Runs the cascade along a reference: the position, altitude and attitude controllers whose clocks tick.
@@ -474,6 +465,15 @@ impl ControlState {
             times,
         );
     }
+}
+
+/// Refuses what no law of the design can fly.
+fn check(design: &LoopDesign, inputs: &ControlInputs, time_us: u64) -> Result<(), ControlError> {
+    inputs.check(time_us)?;
+    if let Target::WithoutRotor { lost, .. } = inputs.target {
+        design.rotor_loss.of(lost)?;
+    }
+    Ok(())
 }
 
 /// Reference and controllers that take over the vehicle where it is.
