@@ -274,8 +274,12 @@ impl ControlState {
 
     /// Whether reference and controllers take over the vehicle under these inputs, if they are armed.
     fn takes_over(&self, inputs: &ControlInputs) -> bool {
-        let law = inputs.target.law();
-        !self.armed || self.engage || (law != self.law && self.law != ControlLaw::Cascade)
+        !self.armed || self.takes_over_for(inputs.target.law())
+    }
+
+    /// Whether they do while the rotors turn.
+    fn takes_over_for(&self, law: ControlLaw) -> bool {
+        self.engage || (law != self.law && self.law != ControlLaw::Cascade)
     }
 
     /// Takes inputs in. Reference and controllers that begin take over the vehicle where it is.
@@ -286,13 +290,8 @@ impl ControlState {
         instruments: &mut impl Instruments,
         time_us: u64,
     ) -> Result<(), ControlError> {
-        let (law, takes_over) = (inputs.target.law(), self.takes_over(inputs));
-        self.engage |= law != self.law && self.law != ControlLaw::Cascade;
-        self.law = law;
-        if let Some(shaping) = inputs.shaping.filter(|shaping| *shaping != self.guidance.is_shaped()) {
-            let limits = (&self.limits.of_references(configuration), &configuration.response_times());
-            self.guidance = self.guidance.switched(limits, shaping, time_us);
-        }
+        let takes_over = self.takes_over(inputs);
+        self.take_law(configuration, inputs, time_us);
         if inputs.armed && takes_over {
             let start = instruments.read_at_takeover(time_us).checked(time_us)?;
             let shaping = self.guidance.is_shaped();
@@ -308,6 +307,17 @@ impl ControlState {
         self.engage &= !inputs.armed;
         self.armed = inputs.armed;
         Ok(())
+    }
+
+    /// Takes in which law is to fly, and whether its reference is shaped.
+    fn take_law(&mut self, configuration: &Configuration, inputs: &ControlInputs, time_us: u64) {
+        let law = inputs.target.law();
+        self.engage |= law != self.law && self.law != ControlLaw::Cascade;
+        self.law = law;
+        if let Some(shaping) = inputs.shaping.filter(|shaping| *shaping != self.guidance.is_shaped()) {
+            let limits = (&self.limits.of_references(configuration), &configuration.response_times());
+            self.guidance = self.guidance.switched(limits, shaping, time_us);
+        }
     }
 
     /// Runs the controllers whose clocks tick.

@@ -30,15 +30,13 @@ impl ControlState {
 
     /// Whether these inputs leave it nothing to do at an instant at which no controller samples but to watch its reference.
     pub(crate) fn only_watches(&self, inputs: &Inputs) -> bool {
-        inputs.armed == self.armed
-            && !(self.armed && self.engage)
-            && inputs.law() == self.law
-            && inputs.shaping.is_none_or(|shaping| shaping == self.guidance.is_shaped())
+        inputs.armed == self.armed && !(self.armed && self.takes_over_for(inputs.law()))
     }
 
     /// Looks at such inputs at its next instant.
     pub(crate) fn watch(&mut self, design: &LoopDesign, inputs: &ControlInputs) -> Result<(), ControlError> {
         check(design, inputs, self.next_us)?;
+        self.take_law(&design.configuration, inputs, self.next_us);
         if self.armed
             && let Target::Reference(reference) = &inputs.target
         {
