@@ -12,8 +12,8 @@ use crate::Failure;
 use crate::median::median;
 use crate::stopwatch::Stopwatch;
 
-/// Step of integration of both, s, and the order of its method.
-const STEP_S: f64 = 1e-3;
+/// Longest step of integration of both, s, which calm flight takes, and the order of its method.
+const STEP_S: f64 = 5e-3;
 const ORDER: u32 = 4;
 /// Vehicles of the fleet.
 const VEHICLES: u32 = 64;

@@ -6,18 +6,16 @@ use core::ops::Range;
 use nalgebra::{DMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
+use crate::placed_limit::{COMPONENTS, PlacedLimit};
 use crate::product::product;
 use crate::sparse_columns::SparseColumns;
+use crate::sparse_rows::SparseRows;
 use crate::{DesignError, Precision, Sample, SignalLimit, StabilizedDesign, validate};
 
-/// Most components of a limited signal.
-pub(crate) const COMPONENTS: usize = 3;
 /// Most directions of a limit.
 const DIRECTIONS: usize = u16::MAX as usize;
 /// Most values of signals on all samples together: what a step keeps on the stack.
 pub(crate) const SIGNALS: usize = 640;
-/// Samples that are looked at side by side.
-const BLOCK: usize = 8;
 /// So many are kept in less room, which takes less time to clear.
 pub(crate) const FEW_SIGNALS: usize = 96;
 
@@ -46,112 +44,6 @@ pub(crate) struct LimitedSignals<T> {
     places: Vec<[u16; 3]>,
     /// One over the length of each row in z and the slack, limit by limit, direction by direction, sample by sample.
     scales: Vec<T>,
-}
-
-/// A limit on the samples on which a plan moves it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(bound = "T: Precision")]
-pub(crate) struct PlacedLimit<T> {
-    pub(crate) directions: Vec<[T; COMPONENTS]>,
-    /// Length of the longest direction.
-    pub(crate) longest: T,
-    pub(crate) relaxation: T,
-    /// The largest and the smallest of [`PlacedLimit::scales`].
-    pub(crate) largest_scale: T,
-    pub(crate) smallest_scale: T,
-    pub(crate) samples: usize,
-    pub(crate) components: usize,
-    /// Index of its first bound among [`Sample::upper`].
-    first_bound: usize,
-    /// Index of its first value among [`Sample::moved`].
-    first_moved: usize,
-    /// Where the samples of each component begin among all signals.
-    first: [usize; COMPONENTS],
-    first_row: usize,
-    /// C and D.
-    state: SparseColumns<T>,
-    input: SparseColumns<T>,
-}
-
-impl<T: Precision> PlacedLimit<T> {
-    /// The same limit in another precision.
-    fn to_precision<U: Precision>(&self) -> PlacedLimit<U> {
-        let number = |value: T| U::of(value.to_f64());
-        PlacedLimit {
-            directions: self.directions.iter().map(|direction| direction.map(number)).collect(),
-            longest: number(self.longest),
-            relaxation: number(self.relaxation),
-            largest_scale: number(self.largest_scale),
-            smallest_scale: number(self.smallest_scale),
-            samples: self.samples,
-            components: self.components,
-            first_bound: self.first_bound,
-            first_moved: self.first_moved,
-            first: self.first,
-            first_row: self.first_row,
-            state: self.state.to_precision(),
-            input: self.input.to_precision(),
-        }
-    }
-
-    /// The constraint of a direction at a sample.
-    pub(crate) fn row(&self, sample: usize, direction: usize) -> usize {
-        self.first_row + sample * self.directions.len() + direction
-    }
-
-    /// Its values among those of [`Sample::upper`](crate::Sample::upper), as far as there are.
-    pub(crate) fn bounds<'a>(&self, upper: &'a [T]) -> &'a [T] {
-        let bounds = upper.get(self.first_bound..).unwrap_or_default();
-        &bounds[..bounds.len().min(self.directions.len())]
-    }
-
-    /// The largest |signal|². Several samples are looked at side by side.
-    #[inline]
-    pub(crate) fn largest_square(&self, signals: &[T]) -> T {
-        let mut largest = [T::zero(); BLOCK];
-        for first in (0..self.samples).step_by(BLOCK) {
-            let samples = BLOCK.min(self.samples - first);
-            let mut squares = [T::zero(); BLOCK];
-            for component in 0..self.components {
-                let values = &signals[self.first[component] + first..][..samples];
-                for (square, value) in squares.iter_mut().zip(values) {
-                    *square += *value * *value;
-                }
-            }
-            for (largest, square) in largest.iter_mut().zip(squares) {
-                *largest = if square > *largest { square } else { *largest };
-            }
-        }
-        largest.into_iter().fold(T::zero(), |a, b| if b > a { b } else { a })
-    }
-
-    /// One over the length of the rows of a direction, sample by sample; `scales` being those of all limits.
-    #[inline]
-    pub(crate) fn scales<'a>(&self, side: usize, scales: &'a [T]) -> &'a [T] {
-        &scales[self.first_row + side * self.samples..][..self.samples]
-    }
-
-    /// The values of its first C components.
-    #[inline]
-    pub(crate) fn components<'a, const C: usize>(&self, signals: &'a [T]) -> [&'a [T]; C] {
-        core::array::from_fn(|component| &signals[self.first[component]..][..self.samples])
-    }
-
-    /// The components at a sample among all signals.
-    #[inline]
-    pub(crate) fn at(&self, sample: usize, signals: &[T]) -> [T; COMPONENTS] {
-        core::array::from_fn(|component| {
-            if component < self.components { signals[self.first[component] + sample] } else { T::zero() }
-        })
-    }
-
-    /// C x + D u.
-    fn signal(&self, state: &[T], input: &[T]) -> [T; COMPONENTS] {
-        let mut signal = [T::zero(); COMPONENTS];
-        self.state.add_product(state, &mut signal);
-        self.input.add_product(input, &mut signal);
-        signal
-    }
 }
 
 /// How z stands for a plan: η = η₀ + L⁻ᵀ z with S_ηη = L Lᵀ, in which η₀ = −S_ηη⁻¹ S_ηx x is the plan without limits.
@@ -283,9 +175,10 @@ impl LimitedSignals<f64> {
             }
         }
         let components = limit.directions.ncols();
-        let (mut state, mut input) = (SparseColumns::default(), SparseColumns::default());
-        state.add_block(0, components, limit.state.ncols(), |row, at| limit.state[(row, at)]);
-        input.add_block(0, components, limit.input.ncols(), |row, at| limit.input[(row, at)]);
+        let elements = |matrix: &DMatrix<f64>| {
+            SparseRows::new(components, matrix.ncols(), |row, column| matrix[(row, column)])
+        };
+        let (state, input) = (elements(&limit.state), elements(&limit.input));
         let first_row = self.scales.len();
         for sample in 0..signals.len() {
             let row = |side| [self.limits.len(), sample, side].map(|index| index as u16);
@@ -299,6 +192,13 @@ impl LimitedSignals<f64> {
                 self.scales.push(if length > 0.0 { 1.0 / length } else { 0.0 });
             }
         }
+        let most_by = |columns: Range<usize>| {
+            SparseRows::new(components, columns.len(), |component, column| {
+                largest(&signals, (component, columns.start + column))
+            })
+        };
+        let states = limit.state.ncols();
+        let (most_by_increment, most_by_error) = (most_by(0..states), most_by(states..augmented));
         self.limits.push(PlacedLimit {
             directions: directions(&limit.directions),
             longest: limit.directions.row_iter().map(|row| row.norm()).fold(0.0, f64::max),
@@ -313,6 +213,8 @@ impl LimitedSignals<f64> {
             first_row,
             state,
             input,
+            most_by_increment,
+            most_by_error,
         });
         self.count += components * signals.len();
         signals
@@ -379,6 +281,15 @@ impl<T: Precision> LimitedSignals<T> {
     /// How many values there are.
     pub(crate) fn count(&self) -> usize {
         self.count
+    }
+
+    /// Whether it is plain that the plan without limits keeps them, `input` being u_r(k) + v(k−1). If it is not, its signals tell.
+    pub(crate) fn are_surely_kept<const N: usize, const P: usize, const Q: usize>(
+        &self,
+        sample: &Sample<'_, N, P, Q, T>,
+        input: &SVector<T, P>,
+    ) -> bool {
+        self.limits.iter().all(|limit| limit.is_surely_kept(sample, input))
     }
 
     /// Each signal of the plan without limits, `input` being u_r(k) + v(k−1). S must be their number or more.
@@ -461,8 +372,9 @@ impl<T> MovedSignals<T> {
     }
 }
 
-pub(crate) fn along<T: Precision>(direction: &[T; COMPONENTS], signal: &[T; COMPONENTS]) -> T {
-    direction[0] * signal[0] + direction[1] * signal[1] + direction[2] * signal[2]
+/// The largest magnitude of an element on any sample.
+fn largest(signals: &[SignalAt], at: (usize, usize)) -> f64 {
+    signals.iter().map(|signal| signal.of_state[at].abs()).fold(0.0, f64::max)
 }
 
 /// The rows of a matrix.
@@ -471,4 +383,79 @@ fn directions(matrix: &DMatrix<f64>) -> Vec<[f64; COMPONENTS]> {
         core::array::from_fn(|column| if column < matrix.ncols() { matrix[(row, column)] } else { 0.0 })
     };
     (0..matrix.nrows()).map(row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use nalgebra::{DMatrix, SVector, Vector1, dmatrix};
+    use proptest::prelude::*;
+
+    use super::{LimitedSignals, PlanCoordinates};
+    use crate::placed_limit::along;
+    use crate::{
+        Augmented, Discretization, Dlqr, LaguerreBasis, Sample, SignalLimit, StabilizedDesign, StateSpace,
+        Weights,
+    };
+
+    /// |u| and |v| of a double integrator on some samples, with coordinates in which the plan without limits is no moves at all.
+    fn signals() -> LimitedSignals<f64> {
+        let (a, b, c) = (dmatrix![0.0, 1.0; 0.0, 0.0], dmatrix![0.0; 1.0], dmatrix![1.0, 0.0]);
+        let plant = StateSpace::from_continuous(&a, &b, &c, 0.1, Discretization::ZeroOrderHold).unwrap();
+        let model = Augmented::new(&plant);
+        let weights = Weights::output(&model, 1.0, 0.1).unwrap();
+        let slow = Dlqr::new(model.a(), model.b(), weights.q(), &(weights.r() * 100.0), 1.0).unwrap();
+        let basis = vec![LaguerreBasis::new(2, 0.5).unwrap()];
+        let design = StabilizedDesign::new(&model, &weights, slow.gain(), &basis, 1.0).unwrap();
+        let limits = [
+            SignalLimit::of_inputs(2, 1, SignalLimit::range(1), vec![0, 2, 5]),
+            SignalLimit::of_states(2, 1, &[1], SignalLimit::range(1), vec![1, 4, 9]),
+        ];
+        let coordinates =
+            PlanCoordinates { unlimited: DMatrix::zeros(2, model.states()), by_z: DMatrix::identity(2, 2) };
+        LimitedSignals::new(&design, &limits, &coordinates, 1.0).unwrap()
+    }
+
+    proptest! {
+        /// Limits that are said to be kept leave room on each sample, and far from all limits it is said.
+        #[test]
+        fn what_is_surely_kept_is_kept(
+            numbers in prop::array::uniform6(-1.0..1.0_f64), moved in prop::array::uniform6(-0.3..0.3_f64),
+            upper in prop::array::uniform4(0.1..4.0_f64), far in any::<bool>(),
+        ) {
+            let signals = signals();
+            let [x, v, dx, dv, error, input] = numbers;
+            let upper = if far { [1e3; 4] } else { upper };
+            let sample = Sample::<2, 1, 1> {
+                measured: [x, v].into(),
+                increment: [dx, dv].into(),
+                error: Vector1::new(error),
+                upper: &upper,
+                moved: &moved,
+                ..Sample::default()
+            };
+            let input = Vector1::new(input);
+            let surely = signals.are_surely_kept(&sample, &input);
+            prop_assert!(surely || !far);
+            let values: [f64; 6] = signals.unlimited(&sample, &input);
+            let kept = signals.limits().iter().all(|limit| {
+                (0..limit.samples).all(|at| {
+                    let sides = limit.directions.iter().zip(limit.bounds(&upper));
+                    sides.into_iter().all(|(side, bound)| along(side, &limit.at(at, &values)) <= bound + 1e-12)
+                })
+            });
+            prop_assert!(kept || !surely, "{values:?} within {upper:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_is_not_surely_kept() {
+        let (signals, upper) = (signals(), [1.0; 4]);
+        let increment = SVector::from([f64::NAN, 0.0]);
+        let sample = Sample::<2, 1, 1> { increment, upper: &upper, ..Sample::default() };
+        assert!(!signals.are_surely_kept(&sample, &Vector1::zeros()));
+        let still = Sample::<2, 1, 1> { upper: &upper, ..Sample::default() };
+        assert!(signals.are_surely_kept(&still, &Vector1::zeros()));
+    }
 }

@@ -7,7 +7,8 @@ use crate::active_set::{ActiveSet, Start};
 use crate::controller_state::Decision;
 use crate::dense::{dot, least};
 use crate::dual_search::{Constraints, DualSearch};
-use crate::limited_signals::{FEW_SIGNALS, LimitedSignals, MovedSignals, PlanCoordinates, SIGNALS, along};
+use crate::limited_signals::{FEW_SIGNALS, LimitedSignals, MovedSignals, PlanCoordinates, SIGNALS};
+use crate::placed_limit::along;
 use crate::precision::converted;
 use crate::worst_constraint::Worst;
 use crate::{
@@ -163,11 +164,16 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, T: Precisio
         state: &mut ControllerState<N, P, W, T, K>,
         sample: &Sample<'_, N, P, Q, T>,
     ) -> Option<Decision<P, T>> {
-        let mut program = self.program::<S>(sample, &(sample.input_reference + state.feedback()));
+        let input = sample.input_reference + state.feedback();
+        let warm_start = state.warm_start.strict();
+        // Far from all limits, as most samples are, their signals need not be known one by one.
+        if warm_start.is_empty() && self.signals.are_surely_kept(sample, &input) {
+            return None;
+        }
+        let mut program = self.program::<S>(sample, &input);
         if !program.is_finite() {
             return None;
         }
-        let warm_start = state.warm_start.strict();
         if warm_start.is_empty() && program.worst(&program.unlimited, T::zero(), &[]).is_none() {
             return None;
         }

@@ -3,7 +3,7 @@
 use core::iter;
 
 use crate::Precision;
-use crate::limited_signals::{COMPONENTS, PlacedLimit};
+use crate::placed_limit::{COMPONENTS, PlacedLimit};
 
 /// Samples that are looked at side by side.
 const LANES: usize = 4;

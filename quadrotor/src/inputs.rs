@@ -3,12 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    AttitudeTarget, ControlInputs, Disturbance, PositionReference, ReferencePlan, RigidBody, RotorFault,
-    SimulationError, Target,
+    AttitudeTarget, ControlInputs, ControlLaw, Disturbance, PositionReference, ReferencePlan, RigidBody,
+    RotorFault, SimulationError, Target,
 };
 
-/// All inputs of the closed loop. They are sampled on the engine's grid of events: what is asked for by the control loop,
-/// the disturbance and the faults at each integration step.
+/// All inputs of the closed loop. They are looked at each millisecond and whenever a controller samples; what acts on the plant
+/// acts from then on.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// Where to be.
@@ -111,10 +111,18 @@ impl Inputs {
         inputs
     }
 
+    /// The law that flies under them.
+    pub(crate) fn law(&self) -> ControlLaw {
+        match (self.lost_rotor, &self.attitude_target) {
+            (Some(_), _) => ControlLaw::RotorLoss,
+            (None, Some(_)) => ControlLaw::Attitude,
+            (None, None) => ControlLaw::Cascade,
+        }
+    }
+
     /// Whether a control loop that shapes a reference goes on with one under them.
     pub(crate) fn keep_to_a_shaped_reference(&self) -> bool {
-        let flies_another_law = self.attitude_target.is_some() || self.lost_rotor.is_some();
-        self.armed && !flies_another_law && self.plan.is_none() && self.shaping != Some(false)
+        self.armed && self.law() == ControlLaw::Cascade && self.plan.is_none() && self.shaping != Some(false)
     }
 
     /// Refuses what is not finite, the reference also while an attitude is flown. The control loop checks what else it is asked for

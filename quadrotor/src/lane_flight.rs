@@ -100,7 +100,7 @@ fn stepped<S: InputSignal>(flights: &[LaneFlight<'_, S>], first: usize) -> [Opti
     // The first one flies in lanes that nobody has, too.
     let in_lane = |lane: usize| &*flights[if together[lane] { lane } else { first }].simulation;
     let stepped = in_lane(first).plant().step_side_by_side(
-        &from_fn(|lane| *in_lane(lane).plant_state()),
+        &from_fn(|lane| *in_lane(lane).state_at_event()),
         &from_fn(|lane| in_lane(lane).plant_inputs()),
         interval_us as f64 / 1e6,
     );

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::configuration::validation::{validate_plant, validate_start_over};
 use crate::control::instants::LATEST_US;
-use crate::schedule::next_point_us;
+use crate::schedule::{next_look_us, next_point_us};
 use crate::{
     Configuration, ConfigurationError, Plant, PlantInputs, PlantOutputs, PlantState, RigidBody,
     SimulationError,
@@ -56,8 +56,9 @@ impl PlantSimulation {
         state: PlantSimulationState,
     ) -> Result<Self, ConfigurationError> {
         validate_plant(configuration)?;
-        state.check()?;
-        Ok(Self { plant: Plant::new(&configuration.airframe, &configuration.environment), state })
+        let plant = Plant::new(&configuration.airframe, &configuration.environment);
+        state.check(&plant)?;
+        Ok(Self { plant, state })
     }
 
     /// The plant.
@@ -117,8 +118,8 @@ impl PlantSimulation {
         self.plant.outputs(&self.plant_state(), &self.state.inputs)
     }
 
-    /// Flies on to `time_us`. Inputs are sampled now and at each point of the integration grid; a change takes effect then.
-    /// As long as they do not change between two points, the flight does not depend on how the way there is split into calls.
+    /// Flies on to `time_us`. Inputs are sampled now and at each whole millisecond; a change takes effect then.
+    /// As long as they do not change between two of these, the flight does not depend on how the way there is split into calls.
     ///
     /// # Errors
     /// [`SimulationError`]; the flight then stands at the last event before it.
@@ -132,8 +133,10 @@ impl PlantSimulation {
         }
         while self.state.time_us < time_us {
             self.take(&inputs(self.state.time_us))?;
-            let next_us = next_point_us(self.state.event_us);
-            if next_us <= time_us {
+            let PlantSimulationState { event_us, plant, inputs, .. } = &self.state;
+            let point_us = next_point_us(*event_us, &self.plant, (plant, inputs));
+            let next_us = next_look_us(self.state.time_us).min(point_us);
+            if next_us == point_us && next_us <= time_us {
                 let plant = self.plant_at(next_us);
                 if plant.has_diverged() {
                     let overload = self.state.inputs.disturbance.overload(self.plant.airframe());
@@ -161,13 +164,13 @@ impl PlantSimulation {
 
 impl PlantSimulationState {
     /// Whether a flight can have been in this state: saved states may come from anywhere.
-    fn check(&self) -> Result<(), ConfigurationError> {
+    fn check(&self, of: &Plant) -> Result<(), ConfigurationError> {
         let wrong = |reason| Err(ConfigurationError::State { reason });
         let Self { time_us, event_us, plant, inputs } = self;
         if *time_us > LATEST_US || event_us > time_us {
             return wrong("its last event lies in the future");
         }
-        if *time_us > next_point_us(*event_us) {
+        if *time_us > next_point_us(*event_us, of, (plant, inputs)) {
             return wrong("its last event is not the last");
         }
         if plant.has_diverged() || !RigidBody::is_possible(&plant.body) {

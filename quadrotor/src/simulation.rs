@@ -64,7 +64,7 @@ impl Simulation {
         configuration: &Configuration,
         state: SimulationState,
     ) -> Result<Self, ConfigurationError> {
-        state.check(configuration)?;
+        state.check(configuration, &Plant::new(&configuration.airframe, &configuration.environment))?;
         Self::resumed(&PreparedDesign::new(configuration)?, state)
     }
 
@@ -73,8 +73,9 @@ impl Simulation {
     /// # Errors
     /// [`ConfigurationError::State`].
     pub fn resumed(prepared: &PreparedDesign, state: SimulationState) -> Result<Self, ConfigurationError> {
-        state.check(prepared.configuration())?;
-        Ok(Self::of(ControlLoop::resumed(prepared, state.control)?, state.world))
+        let resumed = Self::of(ControlLoop::resumed(prepared, state.control)?, state.world);
+        state.check(resumed.configuration(), &resumed.plant)?;
+        Ok(resumed)
     }
 
     fn of(control: ControlLoop, world: World) -> Self {
@@ -107,7 +108,7 @@ impl Simulation {
     /// # Errors
     /// [`ConfigurationError::State`]; nothing has changed then.
     pub fn restore(&mut self, state: SimulationState) -> Result<(), ConfigurationError> {
-        state.check(self.configuration())?;
+        state.check(self.configuration(), &self.plant)?;
         self.control.restore(state.control)?;
         self.world = state.world;
         Ok(())
@@ -118,10 +119,11 @@ impl Simulation {
         self.world.time_us
     }
 
-    /// Whether the present is an event of the engine's schedule, as each whole millisecond is: there the plant's state has been found to be
-    /// within the [range](PlantState::has_diverged) of numbers.
-    pub fn is_at_event(&self) -> bool {
-        self.world.time_us == self.world.event_us
+    /// Whether the plant is known to be within the [range](PlantState::has_diverged) of numbers now: at an event of the engine's schedule,
+    /// where it has been looked at, and on a long step, which only a calm plant takes.
+    pub fn is_sound(&self) -> bool {
+        let World { time_us, event_us, plant, .. } = &self.world;
+        time_us == event_us || self.plant.is_calm(plant, &self.plant_inputs())
     }
 
     /// Changes parameters during the flight, those of the airframe included: a payload is dropped by a change of its mass.
@@ -179,9 +181,10 @@ impl Simulation {
         Ok(())
     }
 
-    /// Samples at the last event, if that is due on the way to `time_us`, and returns the next event, to which the plant flies without
-    /// change of what acts on it. Without one before `time_us` or there, that is where the flight goes on to. `are_known` becomes whether
-    /// all later inputs are those that were sampled: they need not be looked at while the control loop waits.
+    /// Samples at the last event, if that is due on the way to `time_us`, looks at the inputs as far as they ask for nothing that the plant
+    /// must be there for, and returns the next event, to which the plant flies without change of what acts on it. Without one before
+    /// `time_us` or there, that is where the flight goes on to. `are_known` becomes whether all later inputs are those that were looked
+    /// at last: they need not be looked at while the control loop waits.
     pub(crate) fn next_event_us(
         &mut self,
         time_us: u64,
@@ -198,10 +201,36 @@ impl Simulation {
             inputs.with(event_us, |inputs| self.sample(inputs))?;
             *are_known = inputs.is_constant();
         }
-        // A sample of the control loop or a point of the integration grid: no integration step crosses a sample,
-        // wherever it is interrupted.
-        let next_us = next_point_us(self.world.event_us).min(self.control.next_sample_us());
-        Ok((next_us <= time_us).then_some(next_us))
+        let point_us = next_point_us(event_us, &self.plant, (&self.world.plant, &self.plant_inputs()));
+        let end_us = point_us.min(time_us);
+        loop {
+            let look_us = self.control.next_sample_us();
+            if look_us >= end_us {
+                return Ok((point_us <= time_us).then_some(point_us));
+            }
+            if *are_known && self.control.waits_until(end_us) {
+                continue;
+            }
+            // No integration step crosses a sample of a controller or a change of what acts on the plant, wherever it is interrupted.
+            if self.control.is_due(look_us) || !inputs.with(look_us, |inputs| self.look(look_us, inputs))? {
+                return Ok(Some(look_us));
+            }
+            *are_known = inputs.is_constant();
+        }
+    }
+
+    /// Looks at inputs between two events; whether that is all there is to do, because they do not change what acts on the plant.
+    fn look(&mut self, look_us: u64, inputs: &Inputs) -> Result<bool, SimulationError> {
+        if !self.world.is_acted_on_as_by(inputs) || !self.control.only_watches(inputs) {
+            return Ok(false);
+        }
+        self.world.time_us = look_us;
+        inputs.check(look_us)?;
+        if !(inputs.keep_to_a_shaped_reference() && self.control.waits(look_us)) {
+            self.control.watch(&inputs.control())?;
+        }
+        self.world.take(inputs);
+        Ok(true)
     }
 
     /// The next event, with the plant as it is there.
@@ -233,8 +262,14 @@ impl Simulation {
         &self.plant
     }
 
+    /// Rotors and rigid body now.
+    pub fn plant_state(&self) -> PlantState {
+        self.plant_at(self.world.time_us)
+    }
+
     /// Rotors and rigid body at the last event.
-    pub fn plant_state(&self) -> &PlantState {
+    #[cfg(feature = "fleet")]
+    pub(crate) fn state_at_event(&self) -> &PlantState {
         &self.world.plant
     }
 

@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::control::control_state::ControlState;
 use crate::control::instants::LATEST_US;
-use crate::schedule::next_point_us;
+use crate::schedule::{next_look_us, next_point_us};
 use crate::sensors::NoiseState;
 use crate::{
-    Airframe, Configuration, ConfigurationError, Disturbance, Inputs, Overload, PlantInputs, PlantState,
-    RigidBody, RotorFault,
+    Airframe, Configuration, ConfigurationError, Disturbance, Inputs, Overload, Plant, PlantInputs,
+    PlantState, RigidBody, RotorFault,
 };
 
 /// Everything that changes during a flight, and all there is to save and restore.
@@ -64,6 +64,13 @@ impl World {
         self.estimate = inputs.estimate;
     }
 
+    /// Whether these inputs act on the plant as what acts on it already.
+    pub(crate) fn is_acted_on_as_by(&self, inputs: &Inputs) -> bool {
+        self.ground_z_m == inputs.ground_z_m
+            && self.disturbance == inputs.disturbance
+            && self.rotor_faults == inputs.rotor_faults
+    }
+
     /// What acts on the plant and is stronger than its rotors.
     pub(crate) fn overload(&self, airframe: &Airframe) -> Option<Overload> {
         self.disturbance.overload(airframe)
@@ -82,17 +89,23 @@ impl World {
 
 impl SimulationState {
     /// Whether a flight can have been in this state: saved states may come from anywhere.
-    pub(crate) fn check(&self, configuration: &Configuration) -> Result<(), ConfigurationError> {
+    pub(crate) fn check(
+        &self,
+        configuration: &Configuration,
+        plant: &Plant,
+    ) -> Result<(), ConfigurationError> {
         let wrong = |reason| Err(ConfigurationError::State { reason });
         let World { time_us, event_us, .. } = self.world;
         if time_us > LATEST_US || event_us > time_us {
             return wrong("its last event lies in the future");
         }
-        let (point_us, sample_us) = (next_point_us(event_us), self.control.next_us());
-        if time_us > event_us && time_us > point_us.min(sample_us) {
+        let inputs = self.world.plant_inputs(self.control.rotor_command_rad_s(), self.control.is_armed());
+        let (point_us, look_us) =
+            (next_point_us(event_us, plant, (&self.world.plant, &inputs)), self.control.next_us());
+        if time_us > event_us && time_us > point_us.min(look_us) {
             return wrong("its last event is not the last");
         }
-        if sample_us < event_us || sample_us > point_us {
+        if look_us < event_us || look_us > next_look_us(time_us) {
             return wrong("its controllers do not sample when they would");
         }
         if !self.world.ground_z_m.is_finite() {

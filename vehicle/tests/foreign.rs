@@ -2,7 +2,9 @@
 //! behind. It must fly as without the wall.
 
 use nalgebra::Vector3;
-use quadrotor::{Configuration, Disturbance, Inputs, Plant, PlantInputs, PlantState, RotorFault, Simulation};
+use quadrotor::{
+    Configuration, Disturbance, Inputs, PlantInputs, PlantSimulation, PlantState, RotorFault, Simulation,
+};
 use vehicle::fault::{Fault, Rotors};
 use vehicle::foreign::{Demand, ForeignDescription, ForeignModel, ForeignMotion, ForeignRole};
 use vehicle::identity::Identity;
@@ -23,8 +25,7 @@ fn description(role: ForeignRole, start: ForeignMotion) -> ForeignDescription {
 #[derive(Debug)]
 struct OwnPlant {
     description: ForeignDescription,
-    plant: Plant,
-    state: PlantState,
+    plant: PlantSimulation,
     /// Whether rotor speeds and thrust are driven, or only the thrust and torques of rotors that it does not have.
     rotors: bool,
     fails_at_us: Option<u64>,
@@ -32,15 +33,16 @@ struct OwnPlant {
 
 impl OwnPlant {
     fn new(configuration: &Configuration, rotors: bool) -> Self {
-        let plant = Plant::new(&configuration.airframe, &configuration.environment);
         let state = PlantState::at_rest(&configuration.initial);
+        let plant =
+            PlantSimulation::new(configuration, &state, &PlantInputs::default()).expect("the plant starts");
         let start = ForeignMotion {
             body: state.body,
             acceleration_m_s2: rotors.then(Vector3::zeros),
             rotor_speed_rad_s: rotors.then_some([0.0; 4]),
             thrust_n: None,
         };
-        Self { description: description(ForeignRole::Plant, start), plant, state, rotors, fails_at_us: None }
+        Self { description: description(ForeignRole::Plant, start), plant, rotors, fails_at_us: None }
     }
 }
 
@@ -60,12 +62,12 @@ impl ForeignModel for OwnPlant {
             PlantInputs::wrench(demand.wrench)
         };
         let inputs = PlantInputs { disturbance, ..actuation };
-        self.state = self.plant.step(&self.state, &inputs, demand.duration_us as f64 / 1e6);
-        let shown = self.rotors;
+        self.plant.advance_to(demand.time_us + demand.duration_us, &|_| inputs)?;
+        let (shown, state) = (self.rotors, self.plant.plant_state());
         Ok(ForeignMotion {
-            body: self.state.body,
-            acceleration_m_s2: shown.then(|| self.plant.acceleration_m_s2(&self.state, &inputs)),
-            rotor_speed_rad_s: shown.then_some(self.state.rotor_speed_rad_s),
+            body: state.body,
+            acceleration_m_s2: shown.then(|| self.plant.plant().acceleration_m_s2(&state, &inputs)),
+            rotor_speed_rad_s: shown.then_some(state.rotor_speed_rad_s),
             thrust_n: None,
         })
     }
@@ -104,7 +106,7 @@ impl ForeignModel for OwnLoop {
         let inputs =
             Inputs { reference: demand.reference, armed: demand.armed, disturbance, ..Inputs::default() };
         self.simulation.advance_to(demand.time_us + demand.duration_us, &inputs)?;
-        let PlantState { body, rotor_speed_rad_s, .. } = *self.simulation.plant_state();
+        let PlantState { body, rotor_speed_rad_s, .. } = self.simulation.plant_state();
         Ok(ForeignMotion { body, rotor_speed_rad_s: Some(rotor_speed_rad_s), ..self.description.start })
     }
 }

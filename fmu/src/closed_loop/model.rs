@@ -105,9 +105,8 @@ impl Model for ClosedLoop {
         outputs::are_finite(outputs)
     }
 
-    /// An event is not reached with a plant that has diverged.
     fn is_sound(&self) -> bool {
-        self.0.is_at_event()
+        self.0.is_sound()
     }
 
     fn retune(&mut self, configuration: &Configuration) -> Result<(), FlightError> {

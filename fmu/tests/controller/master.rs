@@ -5,7 +5,7 @@ use fmu::{
     AttitudeMeasurement, Controller, ControllerInputs, ControllerParameters, MeasuredMotion, Measurements,
     RotorSpeedMeasurement,
 };
-use quadrotor::{Configuration, Inputs, Plant, PlantInputs, PlantState};
+use quadrotor::{Configuration, Inputs, PlantInputs, PlantSimulation, PlantState};
 
 /// What makes a flight the closed loop's, bit for bit.
 pub const EXACT: Measurements =
@@ -15,9 +15,6 @@ pub const EXACT: Measurements =
 pub fn exact(configuration: Configuration) -> ControllerParameters {
     ControllerParameters { configuration, measurements: EXACT }
 }
-
-/// Step of the plant's integration, µs.
-pub const GRID_US: u64 = 1_000;
 
 /// In which order a master steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +28,8 @@ pub enum Order {
 /// Controllers and a plant that know nothing of each other.
 pub struct Pair {
     pub controller: Controller,
-    pub plant: Plant,
+    plant: PlantSimulation,
+    /// Of the plant; what is changed here changes there.
     pub state: PlantState,
     order: Order,
 }
@@ -57,21 +55,16 @@ pub fn with_measured(inputs: &Inputs, measured: MeasuredMotion) -> ControllerInp
     ControllerInputs { reference, armed, measured, ground_z_m }
 }
 
-/// The plant that begins where a configuration says.
-pub fn plant_of(configuration: &Configuration, armed: bool) -> (Plant, PlantState) {
-    let plant = Plant::new(&configuration.airframe, &configuration.environment);
+/// Where a plant begins by its configuration.
+pub fn start_of(configuration: &Configuration, armed: bool) -> PlantState {
     let initial = &configuration.initial;
-    let state = if armed {
-        PlantState::hovering(initial, &configuration.airframe)
-    } else {
-        PlantState::at_rest(initial)
-    };
-    (plant, state)
+    if armed { PlantState::hovering(initial, &configuration.airframe) } else { PlantState::at_rest(initial) }
 }
 
 impl Pair {
     pub fn new(parameters: &ControllerParameters, inputs: &Inputs, order: Order) -> Self {
-        let (plant, state) = plant_of(&parameters.configuration, inputs.armed);
+        let state = start_of(&parameters.configuration, inputs.armed);
+        let plant = PlantSimulation::new(&parameters.configuration, &state, &PlantInputs::default()).unwrap();
         let controller = Controller::new(parameters, &with_measured(inputs, measured(&state))).unwrap();
         Self { controller, plant, state, order }
     }
@@ -95,12 +88,10 @@ impl Pair {
     fn drive(&mut self, begin_us: u64, step_us: u64, inputs: &Inputs, command_rad_s: [f64; 4]) {
         let acting =
             PlantInputs { disturbance: inputs.disturbance, ..PlantInputs::rotor_speeds(command_rad_s) };
-        // The grid of the closed loop, and the rest of a step that ends between two of its points.
-        let (mut now_us, end_us) = (begin_us, begin_us + step_us);
-        while now_us < end_us {
-            let next_us = ((now_us / GRID_US + 1) * GRID_US).min(end_us);
-            self.state = self.plant.step(&self.state, &acting, (next_us - now_us) as f64 / 1e6);
-            now_us = next_us;
+        if self.plant.plant_state() != self.state {
+            self.plant.set_plant_state(&self.state);
         }
+        self.plant.advance_to(begin_us + step_us, &|_| acting).unwrap();
+        self.state = self.plant.plant_state();
     }
 }

@@ -119,7 +119,7 @@ fn commands_of_loop(end_us: u64, inputs: impl Fn(u64) -> ControllerInputs) -> [f
     let control_inputs = |time_us: u64| ControlInputs::armed(Target::Reference(inputs(time_us).reference));
     let mut read = |time_us: u64| {
         let motion = inputs(time_us).measured;
-        let (mut pair, body) = (crate::master::plant_of(&Configuration::default(), true).1, motion);
+        let (mut pair, body) = (crate::master::start_of(&Configuration::default(), true), motion);
         let [w, i, j, k] = body.quaternion;
         pair.body.position_m = body.position_m.into();
         pair.body.velocity_m_s = body.velocity_m_s.into();
@@ -319,6 +319,6 @@ fn a_run_over_ground_begins_anywhere() {
 
 #[test]
 fn measured_states_are_what_a_plant_has() {
-    let (_, state) = crate::master::plant_of(&Configuration::default(), true);
+    let state = crate::master::start_of(&Configuration::default(), true);
     assert_eq!(measured(&state), MeasuredMotion::default());
 }

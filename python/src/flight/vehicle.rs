@@ -104,7 +104,7 @@ impl Vehicle {
         match (&self.engine, self.actuation) {
             (Engine::Loop(simulation), Actuation::Rates) => Asked::Turn {
                 commands: self.commands,
-                from: attitude(simulation.plant_state()),
+                from: attitude(&simulation.plant_state()),
                 start_us: simulation.time_us(),
             },
             _ => Asked::Flight(self.commands.flight),
@@ -165,7 +165,7 @@ impl Vehicle {
         };
         match &mut self.engine {
             Engine::Loop(simulation) => {
-                let state = placed(*simulation.plant_state());
+                let state = placed(simulation.plant_state());
                 simulation.place(simulation.time_us(), state).map_err(|error| format!("motion: {error}"))
             }
             Engine::Plant(simulation) => {

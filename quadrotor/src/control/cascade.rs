@@ -262,7 +262,7 @@ impl Cascade {
         let upright = upright(&seen.body);
         let attitude = self.required_attitude(configuration, &required, &Heading::of(reference), upright);
         let later = self.required_attitude(configuration, &later, &Heading::of(answered), upright);
-        self.tilt_reference_rad = [attitude.roll_rad, attitude.pitch_rad];
+        self.tilt_reference_rad = attitude.tilt_rad();
         let lag_s = configuration.airframe.rotor_time_constant_s;
         let change = attitude.attitude.inverse() * later.attitude * later.angular_acceleration_rad_s2
             - attitude.angular_acceleration_rad_s2;
@@ -312,8 +312,14 @@ impl Cascade {
             return FlatAttitude::new(&none, &none, &none, heading);
         }
         let wanted_m_s2 = required.acceleration_m_s2 + self.feedback_m_s2;
-        // Commands that are cut off turn with the reference.
         let largest_m_s2 = || {
+            // Mostly plain, as tan x ≥ x: no command within its own lean is cut off.
+            let upright_m_s2 = (GRAVITY_M_S2 - wanted_m_s2.z).max(0.0);
+            let surely_m_s2 = commanded_tilt_rad(configuration) * upright_m_s2;
+            if wanted_m_s2.xy().norm_squared() <= surely_m_s2 * surely_m_s2 {
+                return surely_m_s2;
+            }
+            // Commands that are cut off turn with the reference.
             let required_m_s2 = required.acceleration_m_s2.xy().norm();
             self.largest_lean(configuration, wanted_m_s2.z).beside(required_m_s2)
         };

@@ -10,7 +10,7 @@ use crate::control::control_state::ControlState;
 use crate::control::measurement::Instruments;
 use crate::design::loop_design::LoopDesign;
 use crate::design::prepared_design::PreparedDesign;
-use crate::{CascadeDesign, Configuration, ConfigurationError, RigidBody, StabilityReport};
+use crate::{CascadeDesign, Configuration, ConfigurationError, Inputs, RigidBody, StabilityReport};
 
 /// Guidance, estimator and controllers of a vehicle: from references and measurements to rotor commands.
 ///
@@ -213,6 +213,34 @@ impl ControlLoop {
             self.state.wait();
         }
         waits
+    }
+
+    /// The same for all instants before `time_us` and before the next sample of a controller.
+    pub(crate) fn waits_until(&mut self, time_us: u64) -> bool {
+        let waits = self.state.waits();
+        if waits {
+            self.state.wait_until(time_us);
+        }
+        waits
+    }
+
+    /// Whether a controller samples at `time_us`, at its next instant or before it.
+    pub(crate) fn is_due(&self, time_us: u64) -> bool {
+        self.state.is_due(time_us)
+    }
+
+    /// Whether these inputs leave it nothing to do at an instant at which no controller samples but to watch its reference: it neither
+    /// measures nor changes a command.
+    pub(crate) fn only_watches(&self, inputs: &Inputs) -> bool {
+        self.state.only_watches(inputs)
+    }
+
+    /// Looks at such inputs at its next instant.
+    ///
+    /// # Errors
+    /// [`ControlError`]; nothing has changed then.
+    pub(crate) fn watch(&mut self, inputs: &ControlInputs) -> Result<(), ControlError> {
+        self.state.watch(&self.design, inputs)
     }
 
     /// Mass that the controllers go by, kg: as learned in flight, or as configured.

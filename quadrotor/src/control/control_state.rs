@@ -1,5 +1,7 @@
 //! Everything that changes in a control loop, and one sample of it.
 
+mod watching;
+
 use serde::{Deserialize, Serialize};
 
 use crate::control::cascade::Cascade;
@@ -222,10 +224,7 @@ impl ControlState {
         instruments: &mut impl Instruments,
     ) -> Result<(), ControlError> {
         let time_us = self.next_us;
-        inputs.check(time_us)?;
-        if let Target::WithoutRotor { lost, .. } = inputs.target {
-            design.rotor_loss.of(lost)?;
-        }
+        check(design, inputs, time_us)?;
         let (due, sample_us) = if time_us < self.sample_us {
             (Due::NONE, self.sample_us)
         } else {
@@ -243,17 +242,6 @@ impl ControlState {
             (Err(_), None) => {}
         }
         advanced
-    }
-
-    /// Whether nothing but time goes on at its next instant under a reference: no controller samples, and it is shaped already.
-    pub(crate) fn waits(&self) -> bool {
-        let flies_a_reference = self.armed && !self.engage && self.law == ControlLaw::Cascade;
-        self.next_us < self.sample_us && flies_a_reference && self.guidance.is_shaped()
-    }
-
-    /// Goes on to the instant after the next one while it [waits](Self::waits).
-    pub(crate) fn wait(&mut self) {
-        self.next_us = Clocks::next_instant_us(self.next_us, self.sample_us);
     }
 
     /// Takes inputs in, and runs the controllers that are due. An error may leave it half done if it takes over a vehicle; else
@@ -286,8 +274,12 @@ impl ControlState {
 
     /// Whether reference and controllers take over the vehicle under these inputs, if they are armed.
     fn takes_over(&self, inputs: &ControlInputs) -> bool {
-        let law = inputs.target.law();
-        !self.armed || self.engage || (law != self.law && self.law != ControlLaw::Cascade)
+        !self.armed || self.takes_over_for(inputs.target.law())
+    }
+
+    /// Whether they do while the rotors turn.
+    fn takes_over_for(&self, law: ControlLaw) -> bool {
+        self.engage || (law != self.law && self.law != ControlLaw::Cascade)
     }
 
     /// Takes inputs in. Reference and controllers that begin take over the vehicle where it is.
@@ -298,13 +290,8 @@ impl ControlState {
         instruments: &mut impl Instruments,
         time_us: u64,
     ) -> Result<(), ControlError> {
-        let (law, takes_over) = (inputs.target.law(), self.takes_over(inputs));
-        self.engage |= law != self.law && self.law != ControlLaw::Cascade;
-        self.law = law;
-        if let Some(shaping) = inputs.shaping.filter(|shaping| *shaping != self.guidance.is_shaped()) {
-            let limits = (&self.limits.of_references(configuration), &configuration.response_times());
-            self.guidance = self.guidance.switched(limits, shaping, time_us);
-        }
+        let takes_over = self.takes_over(inputs);
+        self.take_law(configuration, inputs, time_us);
         if inputs.armed && takes_over {
             let start = instruments.read_at_takeover(time_us).checked(time_us)?;
             let shaping = self.guidance.is_shaped();
@@ -320,6 +307,17 @@ impl ControlState {
         self.engage &= !inputs.armed;
         self.armed = inputs.armed;
         Ok(())
+    }
+
+    /// Takes in which law is to fly, and whether its reference is shaped.
+    fn take_law(&mut self, configuration: &Configuration, inputs: &ControlInputs, time_us: u64) {
+        let law = inputs.target.law();
+        self.engage |= law != self.law && self.law != ControlLaw::Cascade;
+        self.law = law;
+        if let Some(shaping) = inputs.shaping.filter(|shaping| *shaping != self.guidance.is_shaped()) {
+            let limits = (&self.limits.of_references(configuration), &configuration.response_times());
+            self.guidance = self.guidance.switched(limits, shaping, time_us);
+        }
     }
 
     /// Runs the controllers whose clocks tick.
@@ -398,8 +396,11 @@ impl ControlState {
             rotor_command_rad_s: &self.command.speed_rad_s,
             time_us,
         };
-        self.learned.observe(configuration, &sample);
-        self.believe(&believed, configuration)
+        if self.learned.observe(configuration, &sample) {
+            self.believe(&believed, configuration)
+        } else {
+            believed
+        }
     }
 
     /// Runs the cascade along a reference: the position, altitude and attitude controllers whose clocks tick.
@@ -474,6 +475,15 @@ impl ControlState {
             times,
         );
     }
+}
+
+/// Refuses what no law of the design can fly.
+fn check(design: &LoopDesign, inputs: &ControlInputs, time_us: u64) -> Result<(), ControlError> {
+    inputs.check(time_us)?;
+    if let Target::WithoutRotor { lost, .. } = inputs.target {
+        design.rotor_loss.of(lost)?;
+    }
+    Ok(())
 }
 
 /// Reference and controllers that take over the vehicle where it is.

@@ -37,10 +37,8 @@ const LEAST_COS_ROLL: f64 = 0.05;
 pub struct FlatAttitude {
     /// FRD into NED, with the heading ψ of ZYX Euler angles.
     pub attitude: UnitQuaternion<f64>,
-    /// φ, rad.
-    pub roll_rad: f64,
-    /// θ, rad.
-    pub pitch_rad: f64,
+    /// φ and θ.
+    tilt: [Angle; 2],
     /// p, q, r in the axes of this attitude, rad/s.
     pub body_rate_rad_s: Vector3<f64>,
     /// ṗ, q̇, ṙ in the axes of this attitude, rad/s².
@@ -123,13 +121,19 @@ impl FlatAttitude {
             turn.of(&(in_body * thrust.down_rate), &(in_body * thrust.down_acceleration));
         Self {
             attitude,
-            roll_rad: roll.rad(),
-            pitch_rad: pitch.rad(),
+            tilt: [roll, pitch],
             body_rate_rad_s,
             angular_acceleration_rad_s2,
             thrust_m_s2: thrust.size_m_s2,
             thrust_rate_m_s3: thrust.size_rate_m_s3,
         }
+    }
+}
+
+impl FlatAttitude {
+    /// φ and θ, rad.
+    pub fn tilt_rad(&self) -> [f64; 2] {
+        self.tilt.map(|angle| angle.rad())
     }
 }
 

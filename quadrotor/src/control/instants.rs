@@ -139,6 +139,11 @@ impl Clocks {
         inputs_us.min(sample_us)
     }
 
+    /// The first instant at `time_us` or later, if a controller samples next at `sample_us`.
+    pub(crate) fn instant_from(time_us: u64, sample_us: u64) -> u64 {
+        Self::INPUTS.first_us(time_us).min(sample_us)
+    }
+
     /// The first instant at `time_us` or later.
     pub(crate) fn first_instant_us(&self, time_us: u64) -> u64 {
         Self::INPUTS.first_us(time_us).min(self.first_sample_us(time_us))

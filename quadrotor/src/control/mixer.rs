@@ -20,6 +20,8 @@ pub struct Mixer {
     turning: [f64; 4],
     /// One over its magnitude.
     per_turning: [f64; 4],
+    /// The least of these among the rotors that turn the vehicle to the right by more thrust, and among the others.
+    least_per_turning: [f64; 2],
 }
 
 /// A rotor with a smaller share in the yaw has none.
@@ -44,7 +46,12 @@ impl Mixer {
     pub fn new(airframe: &Airframe) -> Result<Self, ConfigurationError> {
         let inverse: Matrix4<f64> = airframe.layout.inverse_allocation()?;
         let (weakest, strongest) = airframe.thrust_range_n();
-        let turning = core::array::from_fn(|rotor| 4.0 * inverse[(rotor, 3)]);
+        let turning: [f64; 4] = core::array::from_fn(|rotor| 4.0 * inverse[(rotor, 3)]);
+        let per_turning = turning.map(|turning| 1.0 / libm::fabs(turning).max(NO_YAW));
+        let least = |right: bool| {
+            let of_side = turning.iter().zip(per_turning).filter(|(turning, _)| (**turning > 0.0) == right);
+            of_side.map(|(_, per)| per).fold(f64::INFINITY, f64::min)
+        };
         Ok(Self {
             thrust_coefficient_n_s2: airframe.thrust_coefficient_n_s2,
             torque_coefficient_n_m_s2: airframe.torque_coefficient_n_m_s2,
@@ -52,7 +59,8 @@ impl Mixer {
             range_n: (weakest / 4.0, strongest / 4.0),
             tilting: core::array::from_fn(|rotor| [inverse[(rotor, 1)], inverse[(rotor, 2)]]),
             turning,
-            per_turning: turning.map(|turning| 1.0 / libm::fabs(turning).max(NO_YAW)),
+            per_turning,
+            least_per_turning: [least(true), least(false)],
         })
     }
 
@@ -141,6 +149,22 @@ impl Mixer {
         };
         let ((low, high), (low_after, high_after)) =
             (range(mean - to_tilt), range(mean - to_tilt - headroom));
+        let torque_n_m =
+            |yaw_n: f64| yaw_n * 4.0 * self.torque_coefficient_n_m_s2 / self.thrust_coefficient_n_s2;
+        (torque_n_m(low.min(low_after)), torque_n_m(high.max(high_after)))
+    }
+
+    /// The same beside no roll and pitch torques: thrust gives way by no more than the headroom.
+    pub(crate) fn turning_range_alone_n_m(&self, (thrust_n, least_thrust_n): (f64, f64)) -> (f64, f64) {
+        let (weakest, strongest) = self.range_n;
+        let mean = (thrust_n / 4.0).clamp(weakest, strongest);
+        let headroom = (YAW_HEADROOM * (strongest - weakest)).min(self.most_given(mean, least_thrust_n));
+        let [right, left] = self.least_per_turning;
+        let range = |mean: f64| {
+            let (down, up) = ((mean - weakest).max(0.0), (strongest - mean).max(0.0));
+            (-(down * right).min(up * left), (up * right).min(down * left))
+        };
+        let ((low, high), (low_after, high_after)) = (range(mean), range(mean - headroom));
         let torque_n_m =
             |yaw_n: f64| yaw_n * 4.0 * self.torque_coefficient_n_m_s2 / self.thrust_coefficient_n_s2;
         (torque_n_m(low.min(low_after)), torque_n_m(high.max(high_after)))
@@ -338,6 +362,17 @@ mod tests {
             };
             prop_assert!((made(z).z - z).abs() < 1e-9, "{z}: {}", made(z));
             prop_assert!(made(100.0 * z.signum()).z.abs() <= z.abs() + 1e-9, "{z}: {}", made(100.0 * z.signum()));
+        }
+
+        /// What yaw has alone is what it has beside no roll and pitch.
+        #[test]
+        fn the_yaw_range_alone_is_that_beside_nothing(
+            thrust in -5.0..30.0, least in 0.0..25.0, layout in 0..3_usize,
+        ) {
+            let layout = [RotorLayout::plus(), RotorLayout::x(), RotorLayout::h(1.5)][layout];
+            let mixer = Mixer::new(&Airframe { layout, ..Airframe::default() }).expect("a mixer");
+            let beside_nothing = mixer.turning_range_n_m((thrust, least), &Vector2::zeros());
+            prop_assert_eq!(mixer.turning_range_alone_n_m((thrust, least)), beside_nothing);
         }
 
         /// The map and its inverse agree for whatever layout is balanced and can make every torque.

@@ -56,6 +56,9 @@ impl RequiredThrust {
     /// Within the thrust and a largest lean, rad.
     pub(crate) fn within(&self, configuration: &Configuration, lean_rad: f64) -> Self {
         let within = self.within_thrust(configuration);
+        if within.surely_leans_less(configuration, lean_rad) {
+            return within;
+        }
         within.leaning_at_most(
             || within.most_horizontal_m_s2(configuration, lean_rad),
             |most_m_s2| within.motion_of_most(most_m_s2, lean_rad),
@@ -81,6 +84,14 @@ impl RequiredThrust {
     pub(crate) fn most_horizontal_m_s2(&self, configuration: &Configuration, lean_rad: f64) -> f64 {
         let vertical_m_s2 = self.acceleration_m_s2.z;
         most_horizontal(vertical_m_s2, lean_rad).min(holding_horizontal_m_s2(configuration, -vertical_m_s2))
+    }
+
+    /// Whether it is plain that it leans less, rad, which most do: tan x ≥ x.
+    fn surely_leans_less(&self, configuration: &Configuration, lean_rad: f64) -> bool {
+        let vertical_m_s2 = self.acceleration_m_s2.z;
+        let least_m_s2 = (lean_rad * (GRAVITY_M_S2 - vertical_m_s2).max(0.0))
+            .min(holding_horizontal_m_s2(configuration, -vertical_m_s2));
+        self.acceleration_m_s2.xy().norm_squared() <= least_m_s2 * least_m_s2
     }
 
     /// The two derivatives of the largest horizontal acceleration m under a lean, rad:

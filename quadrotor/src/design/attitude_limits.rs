@@ -73,7 +73,7 @@ impl RotorRoom<'_> {
     ) -> [f64; TURN_BOUNDS] {
         let tilting = lean_rad_s2.component_mul(&self.inertia_kg_m2.xy()) + self.other_n_m.xy();
         let present = self.mixer.turning_range_n_m(self.thrust_n, &tilting);
-        let alone = self.mixer.turning_range_n_m(self.thrust_n, &Vector2::zeros());
+        let alone = self.mixer.turning_range_alone_n_m(self.thrust_n);
         let acceleration = |torque_n_m: f64| (torque_n_m - self.other_n_m.z) / self.inertia_kg_m2.z;
         let later = (acceleration(alone.0) + reference_rad_s2, acceleration(alone.1) + reference_rad_s2);
         [acceleration(present.1), -acceleration(present.0), later.1, -later.0]

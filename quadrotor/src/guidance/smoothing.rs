@@ -88,6 +88,10 @@ impl Smoothing {
             if since_s <= 0.0 {
                 break;
             }
+            // Along an axis on which nothing moves there are none.
+            if jump == 0.0 {
+                continue;
+            }
             made = sum(made, self.step(since_s).map(|part| jump * part));
         }
         made

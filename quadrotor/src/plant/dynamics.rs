@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::plant::calmness::Calmness;
 use crate::plant::differentiation::real::{Real, Valued};
 use crate::plant::events::branches::{Branches, ByValue};
 use crate::plant::forces::Forces;
@@ -43,6 +44,8 @@ pub struct Plant {
     is_plain: bool,
     /// No foot is farther from the centre of mass.
     reach_m: f64,
+    /// What calm flight keeps to, if there is any.
+    pub(crate) calmness: Option<Calmness>,
     /// Fleets look for plants of a kind at each call.
     #[cfg(feature = "fleet")]
     likeness: u64,
@@ -68,6 +71,7 @@ impl Plant {
             rotor_map: RotorMap::new(airframe),
             is_plain: airframe.has_static_rotors() && !airframe.drags() && !airframe.battery.sag,
             reach_m: reach_m(airframe),
+            calmness: Calmness::new(airframe),
             #[cfg(feature = "fleet")]
             likeness: likeness(airframe, ground_plane),
         }
@@ -95,7 +99,6 @@ impl Plant {
     }
 
     /// No foot is farther from the centre of mass, m.
-    #[cfg(feature = "fleet")]
     pub(crate) fn reach_m(&self) -> f64 {
         self.reach_m
     }
@@ -202,7 +205,8 @@ impl Plant {
         (self.rotor_lag.accelerations_rad_s2(&goals_rad_s, &state.rotor_speed_rad_s), discharge_per_s)
     }
 
-    /// One step of the classical fourth-order Runge–Kutta method over `h_s` seconds. The ground is stiff: 1 ms resolves it.
+    /// One step of the classical fourth-order Runge–Kutta method over `h_s` seconds. The ground is stiff: 1 ms resolves it. In the air, 5 ms
+    /// are as good if all motions are slower than that.
     ///
     /// Static friction is decided at the beginning of the step. A vehicle that stands on all feet, slips by less than
     /// 0.1 m/s, and is pulled along the ground by less than μ N (μ = 0.7) keeps its place and heading exactly, while it may

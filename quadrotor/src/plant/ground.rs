@@ -112,7 +112,7 @@ impl HoldingMargins {
 
 /// Whether the vehicle is so high, or so fast along the ground, that static friction cannot hold it under any pull.
 pub(crate) fn cannot_be_held<T: Valued>(body: &RigidBody<T>, ground_z_m: f64, reach_m: f64) -> bool {
-    is_above(body, ground_z_m, reach_m) || slip_m_s(body, reach_m) >= FRICTION_SLIP_M_S
+    is_farther_than(0.0, body, ground_z_m, reach_m) || slip_m_s(body, reach_m) >= FRICTION_SLIP_M_S
 }
 
 /// How fast the outermost foot may slip along the ground, m/s.
@@ -130,9 +130,14 @@ pub(crate) fn greatest_start_z_m(airframe: &Airframe, body: &RigidBody, ground_z
     libm::floor(1e3 * (ground_z_m + DEEPEST_START_M - lowest_foot_m)) / 1e3
 }
 
-/// Whether no foot can touch the ground in any attitude.
-fn is_above<T: Valued>(body: &RigidBody<T>, ground_z_m: f64, reach_m: f64) -> bool {
-    body.position_m.z.value() - ground_z_m < -reach_m
+/// Whether each foot is farther above the ground than `way_m`, m, in any attitude.
+pub(crate) fn is_farther_than<T: Valued>(
+    way_m: f64,
+    body: &RigidBody<T>,
+    ground_z_m: f64,
+    reach_m: f64,
+) -> bool {
+    body.position_m.z.value() - ground_z_m < -(reach_m + way_m)
 }
 
 /// No foot is farther from the centre of mass, m.

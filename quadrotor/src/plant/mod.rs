@@ -2,6 +2,7 @@
 
 pub(crate) mod airframe;
 pub(crate) mod battery_pack;
+pub(crate) mod calmness;
 pub(crate) mod differentiation;
 pub(crate) mod disturbance;
 pub(crate) mod drag;

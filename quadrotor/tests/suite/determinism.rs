@@ -4,7 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use quadrotor::{
     AttitudeTarget, Configuration, ConfigurationError, ControllerKind, Disturbance, InputSignal, Inputs,
-    Sensors, Simulation, SimulationError,
+    PlantInputs, Sensors, Simulation, SimulationError,
 };
 
 use crate::common::{GOAL_M, goal, smooth_flight, unshaped};
@@ -55,6 +55,33 @@ proptest! {
         let whole = flown_to(&configuration, &[3_000_000]);
         prop_assert_eq!(split.state(), whole.state());
         prop_assert_eq!(split.outputs(), whole.outputs());
+    }
+
+    /// In calm flight the plant takes long steps, which end where an input changes.
+    #[test]
+    fn any_split_around_a_rare_change_gives_the_same_flight(
+        mut times in prop::collection::vec(0u64..200_000, 0..60), change_us in 0u64..200_000, shaping in any::<bool>(),
+    ) {
+        let mut configuration = Configuration::default();
+        configuration.reference.shaping = shaping;
+        let inputs = |time_us: u64| {
+            let mut inputs = goal(GOAL_M, 0.4);
+            inputs.disturbance.force_n.y = if time_us < change_us { 0.0 } else { 1.0 };
+            inputs
+        };
+        let start = Simulation::new(&configuration, &inputs(0)).unwrap();
+        let (mut whole, mut split, mut stepped) = (start.clone(), start.clone(), start);
+        whole.advance_to(200_000, &inputs).unwrap();
+        times.sort_unstable();
+        for time_us in times.into_iter().chain([200_000]) {
+            split.advance_to(time_us, &inputs).unwrap();
+        }
+        // Each millisecond under inputs that are constant until the next.
+        for time_us in (0..200_000).step_by(1_000) {
+            stepped.advance_to(time_us + 1_000, &inputs(time_us)).unwrap();
+        }
+        prop_assert_eq!(split.state(), whole.state());
+        prop_assert_eq!(stepped.state(), whole.state());
     }
 
     /// Observation at any microsecond agrees with a flight that was stopped there for good.
@@ -211,6 +238,22 @@ fn constant_inputs_fly_as_those_that_are_asked_for() {
 }
 
 /// The attitude controller samples at 1.000 and 1.010 s. In between a push acts, rotors stop, and what is not finite is refused.
+/// Between two samples of the attitude controller there are two steps.
+#[test]
+fn calm_flight_takes_long_steps() {
+    let inputs = goal(GOAL_M, 0.4);
+    let mut flight = Simulation::new(&Configuration::default(), &inputs).unwrap();
+    let mut after = |time_us: u64| {
+        flight.advance_to(time_us, &inputs).unwrap();
+        (flight.plant_state(), PlantInputs::rotor_speeds(flight.rotor_command_rad_s()), *flight.plant())
+    };
+    // The sample at 500 ms belongs to what follows.
+    after(501_000);
+    let (middle, command, plant) = after(505_000);
+    assert_eq!(after(509_000).0, plant.step(&middle, &command, 0.004));
+    assert_eq!(after(510_000).0, plant.step(&middle, &command, 0.005));
+}
+
 #[test]
 fn inputs_are_looked_at_between_the_samples_of_the_controllers() {
     let flown = |change: fn(&mut Inputs)| {

@@ -103,8 +103,7 @@ fn a_change_acts_where_it_is_made() {
     let stepped = |state: &PlantState, command, h_s| {
         simulation.plant().step(state, &PlantInputs::rotor_speeds(command), h_s)
     };
-    let expected = stepped(&stepped(&start, slow, 0.0004), fast, 0.0006);
-    let later = stepped(&expected, fast, 0.0002);
+    let later = stepped(&stepped(&start, slow, 0.0004), fast, 0.0008);
     simulation.advance_to(400, &|_| PlantInputs::rotor_speeds(slow)).unwrap();
     simulation.advance_to(1_200, &|_| PlantInputs::rotor_speeds(fast)).unwrap();
     assert_eq!(simulation.plant_state(), later);

@@ -74,7 +74,8 @@ fn open(trajectory: &Trajectory) -> Configuration {
     let flat = FlatAttitude::of(&start);
     configuration.initial.position_m = start.position_m.into();
     configuration.initial.velocity_m_s = start.velocity_m_s.into();
-    configuration.initial.attitude_rad = [flat.roll_rad, flat.pitch_rad, 0.0];
+    let [roll_rad, pitch_rad] = flat.tilt_rad();
+    configuration.initial.attitude_rad = [roll_rad, pitch_rad, 0.0];
     configuration.initial.body_rate_rad_s = flat.body_rate_rad_s.into();
     configuration
 }

@@ -33,7 +33,7 @@ impl ForeignFlight {
         let state = PlantState {
             body: start.body,
             rotor_speed_rad_s: start.rotor_speed_rad_s.unwrap_or_default(),
-            ..*simulation.plant_state()
+            ..simulation.plant_state()
         };
         simulation.place(simulation.time_us(), state)?;
         let (_, _, yaw_rad) = start.body.rotation().euler_angles();
@@ -78,7 +78,7 @@ impl ForeignFlight {
         let time_us = simulation.time_us();
         let commanded = simulation.command(inputs)?;
         let (plant, before) = (simulation.plant(), simulation.plant_state());
-        let driven = drive(self.model.as_mut(), plant, before, &commanded, (time_us, duration_us))?;
+        let driven = drive(self.model.as_mut(), plant, &before, &commanded, (time_us, duration_us))?;
         self.motion = driven.motion;
         self.acceleration_m_s2 = driven.acceleration_m_s2;
         self.thrust_n = driven.motion.thrust_n;
@@ -97,7 +97,7 @@ impl ForeignFlight {
         let demand = self.loop_demand(inputs, time_us, duration_us);
         let motion = self.model.advance(&demand)?;
         self.guide.step(&limits.largest(), h_s, time_us + duration_us);
-        let before = *simulation.plant_state();
+        let before = simulation.plant_state();
         let change = || (motion.body.velocity_m_s - before.body.velocity_m_s) / h_s;
         self.motion = motion;
         self.acceleration_m_s2 = motion.acceleration_m_s2.unwrap_or_else(change);

@@ -58,6 +58,9 @@ const MOST_SURPRISES: f64 = 1.5;
 /// How many times more a gust may change the force along the thrust than it shows at once across it.
 const GUST_SWINGS: f64 = 5.0;
 
+/// Time from one equation that is learned from to the next, µs, when a flight has settled: short beside the memory of the filter, so that
+/// those between them tell nothing that the next one does not.
+const LEARNS_EACH_US: u64 = 20_000;
 /// Less thrust than this share of the weight is free fall, which shows no mass.
 const LEAST_THRUST_SHARE: f64 = 0.2;
 /// Slower than this, m/s, by what the filter has taken in of the velocity, it may stand on something that carries it.
@@ -96,7 +99,7 @@ pub(crate) struct MassAndDrag {
     equation: MotionEquation,
     excitation: Excitation,
     estimate: BoundedEstimate<UNKNOWNS>,
-    /// When the latest equation was made, µs.
+    /// When the latest equation was made that was learned from, µs.
     latest_us: Option<u64>,
     /// Force per mass beside thrust and drag, averaged over seconds, NED, m/s².
     steady_force_m_s2: Vector3<f64>,
@@ -190,33 +193,42 @@ impl MassAndDrag {
         self.latest_us = None;
     }
 
-    /// Learns from an instant of a flight.
-    pub(crate) fn observe(&mut self, configuration: &Configuration, sample: &FlightSample<'_>) {
+    /// Learns from an instant of a flight; whether that may have changed what is believed in.
+    pub(crate) fn observe(&mut self, configuration: &Configuration, sample: &FlightSample<'_>) -> bool {
         if !configuration.controllers.learning {
-            return;
+            return false;
         }
         let thrust_m_s2 = thrust_per_mass_m_s2(configuration, sample);
         if !flies(configuration, sample, thrust_m_s2) {
             self.interrupt();
-            return;
+            return false;
         }
         let FlightSample { motion, velocity_m_s: estimated_velocity_m_s, attitude, time_us, .. } = *sample;
         let sampled = Sampled { motion, estimated_velocity_m_s, attitude, thrust_m_s2, time_us };
-        let Some(terms) = self.equation.observe(sampled) else { return };
-        let Some(latest_us) = self.latest_us.replace(sample.time_us) else { return };
-        let interval_s = (sample.time_us - latest_us) as f64 / 1e6;
+        let before_us = self.equation.latest_us().unwrap_or(time_us);
+        let Some(terms) = self.equation.observe(sampled) else { return false };
+        let latest_us = *self.latest_us.get_or_insert(time_us);
+        let interval_us = time_us.saturating_sub(latest_us);
+        let is_settled = self.settling_s == 0.0;
+        if interval_us < if is_settled { LEARNS_EACH_US } else { 1 } {
+            return false;
+        }
+        self.latest_us = Some(time_us);
+        let [interval_s, sampled_s] = [interval_us, time_us - before_us].map(|us| us as f64 / 1e6);
         self.settling_s = (self.settling_s - interval_s).max(0.0);
         if !terms.is_finite() {
             self.interrupt();
-            return;
+            return false;
         }
-        let noise_m_s2 = noise_m_s2(&configuration.sensors, terms.filled, interval_s);
+        let noise_m_s2 = noise_m_s2(&configuration.sensors, terms.filled, sampled_s);
         // Also of what is not learned from: where the thrust was before it changed shows the mass as soon as it has changed.
         let shown = self.excitation.observe(&terms, interval_s, self.noise_along_m_s2(noise_m_s2));
         let moves = terms.velocity_m_s.norm() > AT_REST_M_S * terms.filled;
-        if moves && !is_saturated(configuration, sample) {
+        let learns = moves && !is_saturated(configuration, sample);
+        if learns {
             self.learn(configuration, &terms, &shown, (noise_m_s2, interval_s));
         }
+        learns
     }
 
     fn learn(
@@ -320,7 +332,7 @@ impl MassAndDrag {
 
 /// Deviation of a filtered equation under the white noise of the sensors, m/s², and what the model misses. Of that a filter of velocities has
 /// taken in as much as of all other terms: the first equations of a flight are small, and tell as much as the later ones. One of positions
-/// begins with an estimated velocity, the error of which it has whole from the first equation on.
+/// begins with an estimated velocity, the error of which it has whole from the first equation on. The sensors are sampled each `interval_s`.
 fn noise_m_s2(sensors: &Sensors, filled: f64, interval_s: f64) -> f64 {
     let (sensed_m_s2, missed_m_s2) = if sensors.output_feedback {
         (sensors.position_noise_m * libm::sqrt(interval_s) * noise_of_positions(), MODEL_NOISE_M_S2)

@@ -130,6 +130,11 @@ impl MotionEquation {
         Self { last: None, interval: None, stages: [Terms::zero(); STAGES] }
     }
 
+    /// The latest instant, µs.
+    pub(crate) fn latest_us(&self) -> Option<u64> {
+        self.last.map(|last| last.time_us)
+    }
+
     /// Takes in an instant and returns the filtered equation of the interval that ends, if a whole one does.
     pub(crate) fn observe(&mut self, now: Sampled) -> Option<Terms> {
         let last = self.last.replace(now)?;

@@ -117,6 +117,19 @@ fn a_fall_shows_the_mass_at_once() {
     }
 }
 
+/// At each sample while the flight settles, later at every second one of 10 ms.
+#[test]
+fn a_flight_that_has_settled_is_learned_from_less_often() {
+    let configuration = believing(1.0);
+    let mut learner = MassAndDrag::new(&configuration);
+    let record = flight(configuration.airframe.mass_kg, 0.0, &Vector3::zeros());
+    let learned: Vec<bool> =
+        record.iter().map(|instant| learner.observe(&configuration, &instant.sample())).collect();
+    let count =
+        |instants: core::ops::Range<usize>| learned[instants].iter().filter(|learned| **learned).count();
+    assert_eq!((count(50..100), count(1_900..2_000)), (50, 50));
+}
+
 /// Batch least squares over the differences of a recorded flight, which knows nothing of filters, priors or forgetting.
 #[test]
 fn it_agrees_with_batch_least_squares() {
