@@ -45,7 +45,12 @@ pub struct LandedDetector {
 impl LandedDetector {
     /// A vehicle at a height, m.
     pub fn new(height_m: f64) -> Self {
-        Self { landed: height_m < FLYING_HEIGHT_M, touching_since_us: None, held_since_us: None, settled: false }
+        Self {
+            landed: height_m < FLYING_HEIGHT_M,
+            touching_since_us: None,
+            held_since_us: None,
+            settled: false,
+        }
     }
 
     /// Whether it stands.
