@@ -57,7 +57,7 @@ fn costs(start: &str, end: &str) -> impl Iterator<Item = &'static CostResult> {
 /// shipped less than 1 %. Fifty free moves stay within 1 %, except for yaw, for which they end too early.
 #[test]
 fn few_coefficients_are_enough_on_steps_under_limits() {
-    let bounds = [("3", 1.1), ("5", 1.05), ("7", 1.01), ("8", 1.01), ("9", 1.01)];
+    let bounds = [("3", 1.11), ("5", 1.05), ("7", 1.01), ("8", 1.01), ("9", 1.01)];
     for (start, bound) in bounds.map(|(n, bound)| (format!("LMPC, N = {n},"), bound)) {
         let ratios: Vec<(f64, &str)> =
             costs(&start, "").map(|cost| (cost.ratio_to_optimum.unwrap(), cost.problem.as_str())).collect();
