@@ -54,7 +54,8 @@ fn costs(start: &str, end: &str) -> impl Iterator<Item = &'static CostResult> {
 
 /// Cost above the optimum of the controllers as they fly, on all steps of all loops, with the shipped a of each loop. The models that
 /// fly have up to six states per axis and limits of rates, for which five coefficients cost up to 4.4 %, and the seven and eight that are
-/// shipped 1.2 % at most. That is on an altitude step of 20 m, of which a plan sees a part. Fifty free moves stay within that, except for yaw, for which they end too early.
+/// shipped 1.2 % at most. That is on an altitude step of 20 m, of which a plan sees a part. Fifty free moves stay within that, except for
+/// yaw, for which they end too early.
 #[test]
 fn few_coefficients_are_enough_on_steps_under_limits() {
     let bounds = [("3", 1.11), ("5", 1.05), ("7", 1.012), ("8", 1.012), ("9", 1.012)];
