@@ -54,11 +54,10 @@ fn costs(start: &str, end: &str) -> impl Iterator<Item = &'static CostResult> {
 
 /// Cost above the optimum of the controllers as they fly, on all steps of all loops, with the shipped a of each loop. The models that
 /// fly have up to six states per axis and limits of rates, for which five coefficients cost up to 4.4 %, and the seven and eight that are
-/// shipped 1.2 % at most. That is on an altitude step of 20 m, of which a plan sees a part. Fifty free moves stay within that, except for
-/// yaw, for which they end too early.
+/// shipped less than 1 %. Fifty free moves stay within 1 %, except for yaw, for which they end too early.
 #[test]
 fn few_coefficients_are_enough_on_steps_under_limits() {
-    let bounds = [("3", 1.11), ("5", 1.05), ("7", 1.012), ("8", 1.012), ("9", 1.012)];
+    let bounds = [("3", 1.1), ("5", 1.05), ("7", 1.01), ("8", 1.01), ("9", 1.01)];
     for (start, bound) in bounds.map(|(n, bound)| (format!("LMPC, N = {n},"), bound)) {
         let ratios: Vec<(f64, &str)> =
             costs(&start, "").map(|cost| (cost.ratio_to_optimum.unwrap(), cost.problem.as_str())).collect();
@@ -75,7 +74,7 @@ fn few_coefficients_are_enough_on_steps_under_limits() {
     // And where it loses: one coefficient, and beside fifty moves.
     assert!(costs("LMPC, N = 1,", "").any(|cost| cost.ratio_to_optimum.unwrap() > 1.3));
     for cost in costs("SS-MPC, N_c = 50, terminal", "weight") {
-        let bound = if cost.problem.starts_with("yaw") { 1.06 } else { 1.012 };
+        let bound = if cost.problem.starts_with("yaw") { 1.06 } else { 1.01 };
         assert!(cost.ratio_to_optimum.unwrap() < bound, "{cost:?}");
     }
 }

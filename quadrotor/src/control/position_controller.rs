@@ -12,11 +12,11 @@ use crate::control::largest_lean::LargestLean;
 use crate::control::observed_motion::{MotionSample, ObservedMotion};
 use crate::control::thrown::Thrown;
 use crate::control::vehicle_motion::HorizontalMotion;
-use crate::design::braking_way::{BRAKING_BOUNDS, BrakingWay};
+use crate::design::braking_way::BrakingWay;
 use crate::design::capacities::{POSITION_FEW, POSITION_MANY};
 use crate::design::position_limits::{
-    AXIS_STATES, Asked, POSITION_BOUNDS, POSITION_STATES, closing_share, horizon_m, in_sight,
-    position_bounds, regulator_horizon_m,
+    AXIS_STATES, Asked, POSITION_STATES, closing_share, horizon_m, in_sight, planned_horizon_m,
+    position_bounds,
 };
 use crate::design::translation_design::PositionLaw;
 use crate::guidance::reference_motion::ReferenceMotion;
@@ -103,33 +103,27 @@ impl PositionController {
         let increment = self.observed.step(design.position.motion.as_ref(), &motion, sample_time_s);
         let under_way =
             self.thrown.turn_under_way(seen, &turning, (design.attitude_loop(), sample_time_s), &jerk_jump);
+        let (error_m, disturbance_m_s2) = (turn.vector(&error), turn.vector(&seen.disturbance_m_s2));
         let way = reference.is_at_rest().then(|| BrakingWay {
             // A law that sees deviations has its goal at zero.
             goal_m: if law.sees_deviation_alone() { zero } else { turn.vector(&reference.position) },
-            error_m: turn.vector(&error),
+            error_m,
             thrust_m_s2: lasting.commanded_m_s2,
-            disturbance_m_s2: turn.vector(&seen.disturbance_m_s2),
+            disturbance_m_s2,
             delay_s: BrakingWay::delay_s(&configuration.limits),
         });
         let lean = (present_m_s2, lasting.beside(asked.thrust_m_s2));
-        let mut upper = [0.0; POSITION_BOUNDS + BRAKING_BOUNDS];
-        upper[..POSITION_BOUNDS].copy_from_slice(&position_bounds(
-            &configuration.limits,
-            lean,
-            &asked,
-            under_way,
-        ));
-        upper[POSITION_BOUNDS..].copy_from_slice(&BrakingWay::bounds(way.as_ref()));
+        let bounds = position_bounds(&configuration.limits, lean, &asked, under_way);
         let sample = Sample {
             measured: turn.state(&measured),
             increment: turn.state(&increment),
             // What disturbs the vehicle accelerates it, too.
             deviation: turn
                 .state(&(deviation + by_axis([zero, zero, seen.disturbance_m_s2, zero, zero, zero]))),
-            error: turn.vector(&error),
+            error: error_m,
             input_reference: turn.vector(&reference.thrust),
-            disturbance: turn.vector(&seen.disturbance_m_s2),
-            upper: &upper,
+            disturbance: disturbance_m_s2,
+            upper: &BrakingWay::bounds_behind(&bounds, way.as_ref()),
             moved: moved.as_ref().map_or(&[], MovedSignals::values),
             ..Sample::default()
         };
@@ -193,7 +187,7 @@ fn planned_error_m(
     let ahead_m_s = -error.dot(&reference.velocity) / error.norm().max(f64::MIN_POSITIVE);
     let speed_m_s = configuration.limits.speed_horizontal_m_s;
     let closing_m_s = speed_m_s * closing_share(speed_m_s, ahead_m_s);
-    let horizon = if regulator.is_some() { regulator_horizon_m } else { horizon_m };
+    let horizon = if regulator.is_some() { horizon_m } else { planned_horizon_m };
     let error = in_sight(&error, horizon(closing_m_s, most_m_s2));
     match regulator {
         Some(regulator) if configuration.controllers.governor => governed(configuration, regulator, &error),

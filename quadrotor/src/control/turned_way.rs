@@ -8,7 +8,7 @@ use crate::control::command_limits::position_bandwidth_rad_s;
 use crate::control::observation::Observation;
 use crate::design::attitude_loop::AttitudeLoop;
 use crate::design::braking_way::swing_s;
-use crate::design::position_limits::{horizon_m, in_sight};
+use crate::design::position_limits::{in_sight, planned_horizon_m};
 use crate::guidance::eased_limits::EasedLimits;
 use crate::guidance::reference_guidance::Guidance;
 use crate::{Configuration, GRAVITY_M_S2, Limits, PositionReference, commanded_tilt_rad};
@@ -127,7 +127,7 @@ fn asked(configuration: &Configuration, attitude: Option<&AttitudeLoop>, error_m
     }
     let bandwidth_rad_s = position_bandwidth_rad_s(configuration, attitude);
     let most_m_s2 = most_horizontal(0.0, commanded_tilt_rad(configuration));
-    let planned_m = in_sight(error_m, horizon_m(limits.speed_horizontal_m_s, most_m_s2)).norm();
+    let planned_m = in_sight(error_m, planned_horizon_m(limits.speed_horizontal_m_s, most_m_s2)).norm();
     let jerk_m_s3 = planned_m * bandwidth_rad_s * bandwidth_rad_s * bandwidth_rad_s;
     let rate = jerk_m_s3 / limits.tilt_rate_rad_s;
     let acceleration = bandwidth_rad_s * jerk_m_s3 / limits.tilt_acceleration_rad_s2;

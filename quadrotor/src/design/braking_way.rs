@@ -5,14 +5,14 @@ use nalgebra::{DMatrix, Vector2};
 
 use crate::Limits;
 use crate::design::limited_samples::in_time;
-use crate::design::position_limits::{AXIS_STATES, POSITION_STATES};
+use crate::design::position_limits::{AXIS_STATES, POSITION_BOUNDS, POSITION_STATES};
 
 /// One over the times, 1/s, that braking takes where each tangent touches: shorter braking is within sight of a plan.
 const SLOPES_1_S: [f64; 3] = [0.5, 0.25, 0.125];
 /// Along both axes, one of which is that of the error.
 const DIRECTIONS: usize = 4;
 /// Bounds, one per direction of each limit.
-pub(crate) const BRAKING_BOUNDS: usize = SLOPES_1_S.len() * DIRECTIONS;
+const BRAKING_BOUNDS: usize = SLOPES_1_S.len() * DIRECTIONS;
 /// Samples at which the rest of the way must be long enough.
 static SAMPLES: &[usize] = &[7, 14, 24, 40];
 /// A violation that costs as much as those of the other limits, m/s.
@@ -85,8 +85,20 @@ impl BrakingWay {
         swing_s(limits) / 4.0
     }
 
+    /// Values of the limits of the position, and behind them those of [`braking_limits`].
+    pub(crate) fn bounds_behind(
+        of_position: &[f64; POSITION_BOUNDS],
+        way: Option<&Self>,
+    ) -> [f64; POSITION_BOUNDS + BRAKING_BOUNDS] {
+        let braking = Self::bounds(way);
+        core::array::from_fn(|bound| match bound.checked_sub(POSITION_BOUNDS) {
+            None => of_position[bound],
+            Some(behind) => braking[behind],
+        })
+    }
+
     /// Values of [`braking_limits`]; without a way, for no goal at rest, nothing is limited.
-    pub(crate) fn bounds(way: Option<&Self>) -> [f64; BRAKING_BOUNDS] {
+    fn bounds(way: Option<&Self>) -> [f64; BRAKING_BOUNDS] {
         core::array::from_fn(|bound| {
             way.map_or(UNBOUNDED_M_S, |way| way.bound(SLOPES_1_S[bound / DIRECTIONS], bound % DIRECTIONS))
         })

@@ -11,7 +11,7 @@ use crate::design::attitude_limits::RotorRoom;
 use crate::design::cascade_design::CascadeDesign;
 use crate::design::controller_limits::least_thrust_n;
 use crate::design::loop_problem::LoopProblem;
-use crate::design::position_limits::{Asked, TurnUnderWay, horizon_m, position_bounds};
+use crate::design::position_limits::{Asked, TurnUnderWay, horizon_m, planned_horizon_m, position_bounds};
 use crate::design::translation_design::{altitude_problem, position_problem};
 use crate::{Configuration, ConfigurationError, Mixer, commanded_tilt_rad};
 
@@ -86,7 +86,7 @@ impl HoverLoops {
                     TurnUnderWay::default(),
                 )
                 .to_vec(),
-                sight: horizon_m(limits.speed_horizontal_m_s, tilted_m_s2),
+                sight: planned_horizon_m(limits.speed_horizontal_m_s, tilted_m_s2),
             },
             lean: HoverLoop { problem: lean, upper: room.lean_bounds().to_vec(), sight: SIGHT_RAD },
             turn: HoverLoop {

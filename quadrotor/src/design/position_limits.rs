@@ -118,21 +118,26 @@ pub(crate) fn position_bounds(
     })
 }
 
-/// The largest distance, m, at which a plan sees a set-point: one that is shorter cannot tell further ones apart, and has no solution that
-/// keeps all limits. Beyond that the speed limit decides.
+/// The largest distance, m, at which a set-point is seen: a plan that is shorter cannot tell further ones apart, and beyond that the
+/// speed limit decides.
+///
+/// ```text
+/// v²/a + 1.2 s · v
+/// ```
+///
+/// The first term is twice the way to brake from the speed limit v at an acceleration a.
+pub(crate) fn horizon_m(speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
+    speed_m_s * speed_m_s / acceleration_m_s2 + 1.2 * speed_m_s
+}
+
+/// The same of a plan of the position, whose way to brake on is a limit of its own: from further away it has no solution that keeps all
+/// limits.
 ///
 /// ```text
 /// v²/(2a) + 1.3 s · v
 /// ```
-///
-/// The first term is the way to brake from the speed limit v at an acceleration a.
-pub(crate) fn horizon_m(speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
+pub(crate) fn planned_horizon_m(speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
     speed_m_s * speed_m_s / (2.0 * acceleration_m_s2) + 1.3 * speed_m_s
-}
-
-/// The same of a regulator, which does not plan: v²/a + 1.2 s · v.
-pub(crate) fn regulator_horizon_m(speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
-    speed_m_s * speed_m_s / acceleration_m_s2 + 1.2 * speed_m_s
 }
 
 /// The largest speed, m/s, while a reference asks for speeds up to `asked_m_s`: the limit, and what it takes to catch up with it.
@@ -173,8 +178,8 @@ mod tests {
     use nalgebra::Vector2;
 
     use super::{
-        Asked, COARSE_SIDES, POSITION_BOUNDS, SIDES, TurnUnderWay, horizon_m, in_sight, position_bounds,
-        position_limits,
+        Asked, COARSE_SIDES, POSITION_BOUNDS, SIDES, TurnUnderWay, horizon_m, in_sight, planned_horizon_m,
+        position_bounds, position_limits,
     };
     use crate::design::limited_samples::TRANSLATION_SAMPLE_S;
     use crate::{GRAVITY_M_S2, Limits};
@@ -253,8 +258,9 @@ mod tests {
 
     #[test]
     fn far_goals_are_seen_at_the_horizon() {
+        assert!((planned_horizon_m(8.0, 4.0) - (8.0 + 10.4)).abs() < 1e-12);
         let horizon = horizon_m(8.0, 4.0);
-        assert!((horizon - (8.0 + 10.4)).abs() < 1e-12);
+        assert!((horizon - (16.0 + 9.6)).abs() < 1e-12);
         let near = Vector2::new(3.0, -4.0);
         assert_eq!(in_sight(&near, horizon), near);
         let far = in_sight(&Vector2::new(-3e300, 4e300), 5.0);
