@@ -313,9 +313,8 @@ impl Cascade {
         }
         let wanted_m_s2 = required.acceleration_m_s2 + self.feedback_m_s2;
         let largest_m_s2 = || {
-            // Mostly plain, as tan x ≥ x: no command within its own lean is cut off.
-            let upright_m_s2 = (GRAVITY_M_S2 - wanted_m_s2.z).max(0.0);
-            let surely_m_s2 = commanded_tilt_rad(configuration) * upright_m_s2;
+            // Mostly plain: no command within its own lean is cut off.
+            let surely_m_s2 = surely_horizontal(wanted_m_s2.z, commanded_tilt_rad(configuration));
             if wanted_m_s2.xy().norm_squared() <= surely_m_s2 * surely_m_s2 {
                 return surely_m_s2;
             }
@@ -411,6 +410,11 @@ fn braking_m_s2(seen: &Observation, reference: &PositionReference) -> f64 {
 /// is `vertical_m_s2`: |a| ≤ tan(lean) (g − G).
 pub(crate) fn most_horizontal(vertical_m_s2: f64, lean_rad: f64) -> f64 {
     libm::tan(lean_rad) * (GRAVITY_M_S2 - vertical_m_s2).max(0.0)
+}
+
+/// A little less, as tan x ≥ x, which takes no tangent: mostly it is plain that a vehicle leans less.
+pub(crate) fn surely_horizontal(vertical_m_s2: f64, lean_rad: f64) -> f64 {
+    lean_rad * (GRAVITY_M_S2 - vertical_m_s2).max(0.0)
 }
 
 /// Vertical accelerations G, m/s², that the thrust limits allow at this tilt: G = g − F cos(tilt)/m.

@@ -1,5 +1,6 @@
 //! Everything that changes in a control loop, and one sample of it.
 
+mod law_in_force;
 mod watching;
 
 use serde::{Deserialize, Serialize};
@@ -272,16 +273,6 @@ impl ControlState {
         self.control(design, inputs, &measurement, (due, time_us))
     }
 
-    /// Whether reference and controllers take over the vehicle under these inputs, if they are armed.
-    fn takes_over(&self, inputs: &ControlInputs) -> bool {
-        !self.armed || self.takes_over_for(inputs.target.law())
-    }
-
-    /// Whether they do while the rotors turn.
-    fn takes_over_for(&self, law: ControlLaw) -> bool {
-        self.engage || (law != self.law && self.law != ControlLaw::Cascade)
-    }
-
     /// Takes inputs in. Reference and controllers that begin take over the vehicle where it is.
     fn take(
         &mut self,
@@ -307,17 +298,6 @@ impl ControlState {
         self.engage &= !inputs.armed;
         self.armed = inputs.armed;
         Ok(())
-    }
-
-    /// Takes in which law is to fly, and whether its reference is shaped.
-    fn take_law(&mut self, configuration: &Configuration, inputs: &ControlInputs, time_us: u64) {
-        let law = inputs.target.law();
-        self.engage |= law != self.law && self.law != ControlLaw::Cascade;
-        self.law = law;
-        if let Some(shaping) = inputs.shaping.filter(|shaping| *shaping != self.guidance.is_shaped()) {
-            let limits = (&self.limits.of_references(configuration), &configuration.response_times());
-            self.guidance = self.guidance.switched(limits, shaping, time_us);
-        }
     }
 
     /// Runs the controllers whose clocks tick.

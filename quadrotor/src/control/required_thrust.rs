@@ -2,7 +2,7 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use crate::control::cascade::{most_horizontal, vertical_range};
+use crate::control::cascade::{most_horizontal, surely_horizontal, vertical_range};
 use crate::design::controller_limits::{LEAST_HORIZONTAL_M_S2, holding_horizontal_m_s2, reference_tilt_rad};
 use crate::{Configuration, GRAVITY_M_S2, PositionReference};
 
@@ -86,10 +86,10 @@ impl RequiredThrust {
         most_horizontal(vertical_m_s2, lean_rad).min(holding_horizontal_m_s2(configuration, -vertical_m_s2))
     }
 
-    /// Whether it is plain that it leans less, rad, which most do: tan x ≥ x.
+    /// Whether it is plain that it leans less, rad, which most do.
     fn surely_leans_less(&self, configuration: &Configuration, lean_rad: f64) -> bool {
         let vertical_m_s2 = self.acceleration_m_s2.z;
-        let least_m_s2 = (lean_rad * (GRAVITY_M_S2 - vertical_m_s2).max(0.0))
+        let least_m_s2 = surely_horizontal(vertical_m_s2, lean_rad)
             .min(holding_horizontal_m_s2(configuration, -vertical_m_s2));
         self.acceleration_m_s2.xy().norm_squared() <= least_m_s2 * least_m_s2
     }

@@ -1,10 +1,8 @@
 //! PX4's speeds that are bound to one another: the largest ones, those of automatic flight, and those that set several at once.
 
 use super::ParameterValues;
-use crate::vehicle::Conduct;
+use crate::vehicle::{Conduct, LEAST_SPEED_M_S};
 
-/// Least speed of the closed loop and of sticks, m/s.
-const LEAST_M_S: f64 = 0.1;
 /// Largest speed of a landing near the ground, m/s.
 const FASTEST_LANDING_M_S: f64 = 3.0;
 /// What PX4 makes of the overall vertical speed: downwards, of a takeoff, of a landing.
@@ -81,17 +79,17 @@ pub(super) fn settle(values: &mut ParameterValues) {
     let [horizontal, vertical] = [conduct.speeds.all_horizontal_m_s, conduct.speeds.all_vertical_m_s];
     if horizontal >= 0.0 {
         conduct.speeds.most_m_s[0] = Some(horizontal);
-        conduct.stick_speed_m_s = horizontal.max(LEAST_M_S);
-        limits.speed_horizontal_m_s = horizontal.max(LEAST_M_S);
+        conduct.stick_speed_m_s = horizontal.max(LEAST_SPEED_M_S);
+        limits.speed_horizontal_m_s = horizontal.max(LEAST_SPEED_M_S);
     }
     if vertical >= 0.0 {
         conduct.speeds.most_m_s[1] = Some(vertical);
         conduct.speeds.most_m_s[2] = Some(SHARE_DOWN * vertical);
         conduct.speeds.takeoff_m_s = SHARE_TAKEOFF * vertical;
-        conduct.land_speed_m_s = (SHARE_LANDING * vertical).clamp(LEAST_M_S, FASTEST_LANDING_M_S);
+        conduct.land_speed_m_s = (SHARE_LANDING * vertical).clamp(LEAST_SPEED_M_S, FASTEST_LANDING_M_S);
     }
     let [horizontal, up, down] =
-        conduct.speeds.most_m_s.map(|most_m_s| most_m_s.map(|most| most.max(LEAST_M_S)));
+        conduct.speeds.most_m_s.map(|most_m_s| most_m_s.map(|most| most.max(LEAST_SPEED_M_S)));
     let bound = |speed_m_s: &mut f64, most_m_s: Option<f64>| {
         *speed_m_s = most_m_s.map_or(*speed_m_s, |most_m_s| speed_m_s.min(most_m_s));
     };

@@ -179,6 +179,7 @@ pub use return_settings::{ReturnGoal, ReturnSettings};
 pub use set_point::{AttitudeSetPoint, AxisTarget, PositionSetPoint, SetPoint, YawTarget};
 pub use settings::VehicleSettings;
 pub use simulated::{Simulated, WIND_FROM_DEG};
+pub(crate) use speeds::LEAST_SPEED_M_S;
 pub use state::Vehicle;
 pub use steering::{SteeringKind, TrackedAttitude};
 pub use stick_settings::{StickSettings, Trainer};

@@ -162,16 +162,13 @@ impl RotorWatch {
             proposal.steer(Steering::Descent { lost_rotor: loss.rotor, reference });
             return;
         }
-        let leads_on = loss.place_m.and_then(|place_m| loss.stay_up(place_m, situation));
-        let reference = match loss.place_m {
-            Some([x, y]) if leads_on.is_some() => {
-                let velocity_m_s = leads_on.unwrap_or_default();
-                PositionReference {
-                    velocity_m_s,
-                    ..at_rest(Vector3::new(x, y, loss.height_z_m), now.attitude_rad.z)
-                }
-            }
-            Some([x, y]) => {
+        let stays_up = loss.place_m.and_then(|place_m| loss.stay_up(place_m, situation));
+        let reference = match (loss.place_m, stays_up) {
+            (Some([x, y]), Some(velocity_m_s)) => PositionReference {
+                velocity_m_s,
+                ..at_rest(Vector3::new(x, y, loss.height_z_m), now.attitude_rad.z)
+            },
+            (Some([x, y]), None) => {
                 let landing = situation.conduct.land_speed_m_s;
                 let sink = landing + SLOWING_PER_S * (situation.ground_z_m() - now.position_m.z - 2.0);
                 let sink = sink.clamp(landing.min(FASTEST_SINK_M_S), FASTEST_SINK_M_S);
@@ -180,7 +177,7 @@ impl RotorWatch {
                     ..at_rest(Vector3::new(x, y, now.position_m.z), now.attitude_rad.z)
                 }
             }
-            None => at_rest(now.position_m, now.attitude_rad.z),
+            (None, _) => at_rest(now.position_m, now.attitude_rad.z),
         };
         proposal.steer(Steering::Descent { lost_rotor: loss.rotor, reference });
     }

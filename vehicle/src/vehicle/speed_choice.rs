@@ -21,13 +21,12 @@ impl SpeedChoice {
         }
         let speeds = &situation.conduct.speeds;
         let takes_off = situation.mode == Mode::Takeoff || situation.mode == Mode::Mission && takes_off;
-        let here_m = &situation.outputs.position_m;
-        let height_m = situation.terrain.z_below_m(here_m) - here_m.z;
         // The landing slows down at least as far up.
         let slow_below_m = speeds.slow_below_m.max(situation.conduct.land_slow_below_m);
-        let is_low = takes_off && height_m < slow_below_m;
+        let here_m = &situation.outputs.position_m;
+        let is_low = || situation.terrain.z_below_m(here_m) - here_m.z < slow_below_m;
         Self {
-            takeoff_m_s: is_low.then_some(speeds.takeoff_m_s),
+            takeoff_m_s: (takes_off && is_low()).then_some(speeds.takeoff_m_s),
             is_led: situation.mode.leader() != Leader::Vehicle,
         }
     }

@@ -10,7 +10,7 @@ use crate::plan::{ChangeSpeed, SpeedKind, SpeedTarget};
 const UP: usize = 1;
 const DOWN: usize = 2;
 /// The closed loop has no limits of speed below this, m/s.
-const LEAST_M_S: f64 = 0.1;
+pub const LEAST_SPEED_M_S: f64 = 0.1;
 
 /// How limits of speed change.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,12 +77,12 @@ impl Speeds {
             let by_return = self.by_return_m_s.filter(|_| axis == 0);
             let limit_m_s =
                 by_mission.or(by_return).or(self.by_command_m_s[axis]).unwrap_or(self.kept_m_s[axis]);
-            let most_m_s = self.most_m_s[axis].map(|most_m_s| most_m_s.max(LEAST_M_S));
+            let most_m_s = self.most_m_s[axis].map(|most_m_s| most_m_s.max(LEAST_SPEED_M_S));
             // Who leads may ask for all that there is.
             let limit_m_s = most_m_s.filter(|_| self.chosen.is_led).unwrap_or(limit_m_s);
             let by_takeoff = self.chosen.takeoff_m_s.filter(|_| axis == UP);
             let limit_m_s =
-                by_takeoff.map_or(limit_m_s, |takeoff_m_s| limit_m_s.min(takeoff_m_s.max(LEAST_M_S)));
+                by_takeoff.map_or(limit_m_s, |takeoff_m_s| limit_m_s.min(takeoff_m_s.max(LEAST_SPEED_M_S)));
             let by_landing = self.by_landing_m_s.filter(|_| axis == DOWN);
             let limit_m_s = by_landing.map_or(limit_m_s, |landing_m_s| limit_m_s.max(landing_m_s));
             most_m_s.map_or(limit_m_s, |most_m_s| limit_m_s.min(most_m_s))

@@ -141,11 +141,6 @@ impl Mission {
         self.actions.turn_to(turn, situation);
     }
 
-    /// Whether it climbs from the ground or descends to it.
-    pub fn is_vertical(&self) -> (bool, bool) {
-        self.course.is_vertical()
-    }
-
     /// Starts, or goes on; `first` is the number of the step to begin with.
     ///
     /// # Errors

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::super::fence_watch::check_goal;
 use super::super::notice::{Refusal, Severity};
 use super::super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
+use super::super::situation::Situation;
 use super::super::steering::SteeringKind;
 use super::Vehicle;
 use crate::mode::Mode;
@@ -44,9 +45,7 @@ impl Vehicle {
             return Err(Refusal::later("Takeoff rejected: already flying"));
         }
         if situation.identity.is_ardupilot() {
-            if !situation.armed {
-                return Err(Refusal::Failed("Takeoff rejected: not armed".to_owned()));
-            }
+            refuse_unarmed(&situation)?;
             if situation.mode != Mode::Offboard {
                 return Err(Refusal::Failed("Takeoff rejected: not in Guided mode".to_owned()));
             }
@@ -90,9 +89,7 @@ impl Vehicle {
             _ => false,
         };
         situation.refuse_without_rotor()?;
-        if !situation.armed {
-            return Err(Refusal::Failed("Takeoff rejected: not armed".to_owned()));
-        }
+        refuse_unarmed(&situation)?;
         if !able {
             let name = situation.identity.mode_name(situation.mode);
             return Err(Refusal::Failed(format!("Takeoff rejected in {name} mode")));
@@ -110,4 +107,9 @@ impl Vehicle {
         self.machines.consent.give();
         Ok(())
     }
+}
+
+/// ArduPilot takes off only when it is armed.
+fn refuse_unarmed(situation: &Situation) -> Result<(), Refusal> {
+    if situation.armed { Ok(()) } else { Err(Refusal::Failed("Takeoff rejected: not armed".to_owned())) }
 }

@@ -4,6 +4,11 @@ use super::{Mission, Progress};
 use crate::plan::step::Navigate;
 
 impl Mission {
+    /// Whether it climbs from the ground or descends to it.
+    pub fn is_vertical(&self) -> (bool, bool) {
+        self.course.is_vertical()
+    }
+
     /// Whether it takes off, or will as its next step.
     pub fn takes_off(&self) -> bool {
         let next = self.program.navigate(self.current).filter(|_| self.progress != Progress::Complete);
