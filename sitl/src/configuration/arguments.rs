@@ -122,6 +122,9 @@ pub struct Arguments {
     /// The file need not exist; it is written whenever a parameter changes. Lines are `NAME VALUE`, `NAME,VALUE` or
     /// `NAME = VALUE`, or those of QGroundControl's files. A file that ends in .params is written in QGroundControl's form,
     /// any other as `NAME VALUE`.
+    ///
+    /// Missions, fences and rally points are kept beside it, in FILE.plans. Without this flag, parameters and plans outlast a
+    /// reboot command, but not the program.
     #[arg(long, env = "LMPC_SITL_PARAMETERS", value_name = "FILE", help_heading = VEHICLE)]
     pub parameters: Option<PathBuf>,
 

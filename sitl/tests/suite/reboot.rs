@@ -2,6 +2,7 @@
 
 use crate::common;
 use crate::common::Bench;
+use crate::common::plan_client::{items, result, upload};
 use crate::common::requests::set_parameter_as;
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::{
@@ -10,6 +11,7 @@ use mavlink::dialects::ardupilotmega::{
 };
 use sitl::record::Digest;
 use vehicle::identity::Identity;
+use vehicle::plan::PlanKind;
 use vehicle::{LandedState, Mode};
 
 const ACCEPTED: u8 = MavResult::MAV_RESULT_ACCEPTED as u8;
@@ -45,7 +47,7 @@ fn reboot(bench: &mut Bench, kind: f32, force: f32) -> u8 {
 
 /// What clients see: the answer first, then time that begins anew, the same parameters, and everything else as at the start.
 #[test]
-fn a_reboot_keeps_parameters_and_nothing_else() {
+fn a_reboot_keeps_parameters_and_begins_everything_else_anew() {
     let mut bench = Bench::started_at(&common::settings(Identity::ArduPilot), 1_720_000_000_000_000);
     set(&mut bench, "FS_GCS_ENABLE", 5.0);
     assert_eq!(parameter(&mut bench, "STAT_BOOTCNT"), 1.0);
@@ -78,6 +80,24 @@ fn a_reboot_keeps_parameters_and_nothing_else() {
     bench.heard.clear();
     assert_eq!(bench.set_mode(Mode::Offboard), 0);
     bench.arm();
+}
+
+/// In both autopilots, plans are in memory that outlasts a boot.
+#[test]
+fn a_reboot_keeps_plans() {
+    for identity in [Identity::Px4, Identity::ArduPilot] {
+        let mut bench = Bench::new(identity);
+        for kind in PlanKind::ALL {
+            let heard = upload(&mut bench, kind, &items(kind, 2));
+            assert_eq!(result(&heard), Some(ACCEPTED), "{identity:?} {kind:?}");
+        }
+        let before = bench.autopilot.vehicle().plans().clone();
+        assert!(PlanKind::ALL.iter().all(|kind| before.get(*kind).items().len() == 2));
+        assert_eq!(reboot(&mut bench, 1.0, 0.0), ACCEPTED);
+        bench.fly(0.5);
+        assert_eq!(bench.autopilot.boots(), 2);
+        assert_eq!(bench.autopilot.vehicle().plans(), &before, "{identity:?}");
+    }
 }
 
 trait AtStart {

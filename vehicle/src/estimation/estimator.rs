@@ -6,12 +6,13 @@ use fusion_nav::{
     PositionNoise, Seconds, SourceHealth, State, StaticSample, StaticWindow, Timestamp, Velocity,
     VelocityNoise,
 };
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, UnitQuaternion, Vector2, Vector3};
 
 use super::barometer::BarometerReading;
 use super::estimate::{Estimate, TestRatios, Validity};
 use super::gps::GpsFix;
 use super::inertial::InertialReading;
+use super::leap::LeapWatch;
 use super::lockout::Lockout;
 use super::magnetometer::MagnetometerReading;
 use super::release::Release;
@@ -46,6 +47,9 @@ pub struct Estimator {
     estimate: Estimate,
     pub(super) resets: u32,
     lockout: Lockout,
+    leap_watch: LeapWatch,
+    /// How many resets there were with the latest fix.
+    watched_resets: u32,
     pub(super) position_release: Release,
     pub(super) velocity_release: Release,
     /// Whether a leap of the position is still to be told.
@@ -82,6 +86,8 @@ impl Estimator {
             estimate: start,
             resets: 0,
             lockout: Lockout::default(),
+            leap_watch: LeapWatch::default(),
+            watched_resets: 0,
             position_release: Release::new(POSITION_RELEASE_M_S),
             velocity_release: Release::new(VELOCITY_RELEASE_M_S2),
             leaps: false,
@@ -148,7 +154,25 @@ impl Estimator {
         if self.lockout.update(fix, motion) && starts_again {
             self.start_again(fix);
         }
+        self.follow_leap(fix);
         place == [true; 2] && motion
+    }
+
+    /// Moves to a receiver that has leapt and stays there, whether the filter rejects it or not.
+    fn follow_leap(&mut self, fix: &GpsFix) {
+        let resets = std::mem::replace(&mut self.watched_resets, self.resets);
+        if self.outside.is_some() || !fix.tells_place() || resets != self.resets {
+            // Somebody else tells the place, too, or it is not the receiver that has leapt.
+            self.leap_watch = LeapWatch::default();
+            return;
+        }
+        let innovation = self.filter.diagnostics().gnss_position.innovation;
+        let Some([north_m, east_m]) = innovation.as_ref().and_then(|off| off.values().first_chunk()) else {
+            return;
+        };
+        if self.leap_watch.update(fix, Vector2::new(*north_m, *east_m).cast()) {
+            self.move_to_fix(fix);
+        }
     }
 
     /// Takes a pressure in, and tells whether it fitted.

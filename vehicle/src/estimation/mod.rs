@@ -28,6 +28,7 @@ pub mod gps;
 mod ideal;
 pub mod inertial;
 mod jamming;
+mod leap;
 mod lockout;
 pub mod magnetometer;
 mod navigation;

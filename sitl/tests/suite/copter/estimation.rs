@@ -163,6 +163,36 @@ fn a_leap_of_the_receiver_is_taken_over_level() {
     assert!(leapt_m > 90.0 && flown_m < 10.0 && flier.mode() == LOITER, "{leapt_m} m, {flown_m} m");
 }
 
+/// How far the estimate is from the receiver's place, m, over the ground.
+fn off_receiver_m(flier: &Flier) -> f64 {
+    let fix = flier.vehicle().readings().gps.expect("a fix");
+    (fix.position_m - flier.vehicle().outputs().position_m).xy().norm()
+}
+
+/// A leap so short that the filter may take it for the receiver's usual error is followed, too, whatever that error is. PX4's EKF2 and
+/// ArduPilot's EKF3 are at the receiver's place again after some seconds.
+#[test]
+fn a_small_leap_of_the_receiver_is_followed_as_well() {
+    for seed in 1..=8 {
+        for leap_m in [7.0, 10.0] {
+            let mut start = crate::common::settings(Identity::ArduPilot);
+            start.sensors = SensorSettings { model: SensorModel::Realistic, seed };
+            let mut flier = Flier::with(&start);
+            flier.fly(4.0);
+            flier.take_off(10.0, LOITER);
+            flier.fly(5.0);
+            let before_m = flier.vehicle().outputs().position_m - flier.vehicle().truth().position_m;
+            flier.set("SIM_GPS1_GLTCH_X", leap_m / 111_194.9);
+            flier.fly(6.0);
+            let early_m = flier.vehicle().outputs().position_m - flier.vehicle().truth().position_m;
+            assert!((early_m - before_m).xy().norm() < 1.0, "seed {seed}: a leap is not believed at once");
+            flier.fly(24.0);
+            let off_m = off_receiver_m(&flier);
+            assert!(off_m < 4.0 && flier.mode() == LOITER, "seed {seed}, {leap_m} m: {off_m} m off");
+        }
+    }
+}
+
 /// SIM_GPS1_JAM in Loiter: the place is lost, and the failsafe of the estimator lands the vehicle near where it was.
 #[test]
 fn a_jammed_receiver_is_not_believed() {
