@@ -149,6 +149,11 @@ fn a_flight_is_in_the_log_with_its_happenings() {
         // A vehicle without rangefinders or a target of landings says nothing of them.
         assert_eq!(rows.contains_key(name), !["RFND", "PL", "PRX", "PRXR"].contains(&name), "{name}");
     }
+    // SITL, ArduCopter, and this program's version.
+    let written = rows["VER"][0].clone();
+    let version = env!("CARGO_PKG_VERSION").split('.').map(|part| part.parse::<f64>().unwrap());
+    assert!(version.eq(["Maj", "Min", "Pat"].map(|name| written[name])), "{written:?}");
+    assert_eq!((written["BT"], written["BU"]), (3.0, 2.0));
     assert!(lines[0].contains("Copter") && lines.iter().any(|line| line == "Armed"), "{lines:?}");
     let column =
         |message: &str, field: &str| -> Vec<f64> { rows[message].iter().map(|row| row[field]).collect() };
@@ -279,4 +284,46 @@ fn every_message_fits_its_description() {
         assert!(message.name.len() <= 4 && message.labels().len() <= 64, "{}", message.name);
         assert!(message.fields.len() < 16, "{}", message.name);
     }
+}
+
+/// Suite: CameraLogMessages: an image is in the log with the place and the attitude that clients are told.
+#[test]
+fn images_are_in_the_log_with_their_places() {
+    let mut logged = Logged::new();
+    assert_eq!(logged.bench.set_mode(vehicle::Mode::Offboard), 0);
+    logged.bench.arm();
+    assert_eq!(logged.bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 10.0]), 0);
+    let mut told = Vec::new();
+    for seconds in [3.0, 9.0] {
+        logged.fly(seconds);
+        assert_eq!(
+            logged.bench.command(MavCmd::MAV_CMD_DO_DIGICAM_CONTROL, [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0]),
+            0
+        );
+        logged.fly(0.1);
+        let feedback = |message: &autopilot::codec::Message| match message {
+            autopilot::codec::Message::Typed(MavMessage::CAMERA_FEEDBACK(told)) => Some(told.clone()),
+            _ => None,
+        };
+        told.extend(logged.bench.heard.iter().filter_map(feedback));
+    }
+    let (rows, _) = read(&logged.logs()[0]);
+    assert_eq!((told.len(), rows["CAM"].len()), (2, 2));
+    for (row, told) in rows["CAM"].iter().zip(&told) {
+        for (name, expected, within) in [
+            ("Lat", f64::from(told.lat) / 1e7, 2e-7),
+            ("Lng", f64::from(told.lng) / 1e7, 2e-7),
+            ("Alt", f64::from(told.alt_msl), 0.02),
+            ("RelAlt", f64::from(told.alt_rel), 0.02),
+            ("GPSAlt", f64::from(told.alt_msl), 1.0),
+            ("R", f64::from(told.roll), 0.01),
+            ("P", f64::from(told.pitch), 0.01),
+            ("Y", f64::from(told.yaw), 0.01),
+            ("Img", f64::from(told.img_idx), 0.0),
+            ("GPSWeek", 2321.0, 0.0),
+        ] {
+            assert!((row[name] - expected).abs() <= within, "{name}: {} and {expected}", row[name]);
+        }
+    }
+    assert!(told[1].alt_rel > 9.0 && told[0].alt_rel < 8.0);
 }

@@ -21,12 +21,14 @@ pub const ERR: u8 = 142;
 pub const ARM: u8 = 144;
 pub const ORGN: u8 = 150;
 pub const DSF: u8 = 136;
+pub const VER: u8 = 152;
+pub const CAM: u8 = 154;
 
 /// A message that is no row of numbers: its number, name, types, labels, units and multipliers.
 pub type Described = (u8, &'static str, &'static str, &'static str, &'static str, &'static str);
 
 /// Those messages.
-pub const DESCRIBED: [Described; 13] = [
+pub const DESCRIBED: [Described; 15] = [
     (FMT, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns", "-b---", "-----"),
     (UNIT, "UNIT", "QbZ", "TimeUS,Id,Label", "s--", "F--"),
     (FMTU, "FMTU", "QBNN", "TimeUS,FmtType,UnitIds,MultIds", "s---", "F---"),
@@ -46,8 +48,27 @@ pub const DESCRIBED: [Described; 13] = [
         "s-------DUm-",
         "F-------GG0-",
     ),
+    (
+        VER,
+        "VER",
+        "QBHBBBBIZHBBII",
+        "TimeUS,BT,BST,Maj,Min,Pat,FWT,GH,FWS,APJ,BU,FV,IMI,ICI",
+        "s-------------",
+        "F-------------",
+    ),
+    (
+        CAM,
+        "CAM",
+        CAM_KINDS,
+        "TimeUS,I,Img,GPSTime,GPSWeek,Lat,Lng,Alt,RelAlt,GPSAlt,R,P,Y",
+        "s#-s-DUmmmddd",
+        "F--C-GGBBB---",
+    ),
     (DSF, "DSF", "QIHIIII", "TimeUS,Dp,Blk,Bytes,FMn,FMx,FAv", "s--b---", "F--0---"),
 ];
+
+/// Types of CAM.
+pub const CAM_KINDS: &str = "QBHIHLLeeefff";
 
 /// Begins a message.
 pub fn head(into: &mut Vec<u8>, number: u8) {
@@ -111,6 +132,22 @@ pub fn parameter(into: &mut Vec<u8>, time_us: u64, name: &str, value: f32, defau
     text(into, name, 16);
     into.extend(value.to_le_bytes());
     into.extend(default.to_le_bytes());
+}
+
+/// VER: who has written the log. `version` are its numbers, major first; readers take ArduCopter's modes by the last but three fields.
+pub fn version(into: &mut Vec<u8>, time_us: u64, name: &str, version: [u8; 3]) {
+    const SIMULATION: u8 = 3;
+    const COPTER: u8 = 2;
+    head(into, VER);
+    into.extend(time_us.to_le_bytes());
+    into.push(SIMULATION);
+    into.extend([0, 0]);
+    into.extend(version);
+    // No kind of release, and no commit of ArduPilot.
+    into.extend([0; 5]);
+    text(into, name, 64);
+    into.extend([0, 0, COPTER, 0]);
+    into.extend([0; 8]);
 }
 
 /// MSG: lines of at most 64 bytes.

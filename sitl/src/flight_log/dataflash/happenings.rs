@@ -3,7 +3,8 @@
 use vehicle::plan::PlanKind;
 use vehicle::{Cause, LandedState};
 
-use super::bytes::{ARM, CMD, ERR, EV, MODE, ORGN, numbers};
+use super::bytes::{ARM, CAM, CAM_KINDS, CMD, ERR, EV, MODE, ORGN, numbers};
+use super::sensors::{WEEK_MS, gps_ms_at};
 use crate::flight_log::LogSource;
 
 /// ArduCopter's numbers of events.
@@ -40,6 +41,8 @@ pub struct Happenings {
     home_m: Option<[f64; 3]>,
     mission: Option<u32>,
     causes: Vec<Cause>,
+    /// How many images have been written.
+    images: u32,
 }
 
 impl Happenings {
@@ -53,6 +56,7 @@ impl Happenings {
             home_m: None,
             mission: None,
             causes: Vec::new(),
+            images: 0,
         }
     }
 
@@ -78,6 +82,28 @@ impl Happenings {
         }
         self.look_at_causes(into, source);
         self.look_at_places(into, source);
+        self.look_at_images(into, source);
+    }
+
+    /// CAM: where an image was taken, with the attitude of the vehicle.
+    fn look_at_images(&mut self, into: &mut Vec<u8>, source: &LogSource<'_>) {
+        let vehicle = source.vehicle;
+        let camera = vehicle.equipment().camera();
+        let since = std::mem::replace(&mut self.images, camera.triggers());
+        for image in camera.images_after(since) {
+            let place = vehicle.frame().to_geodetic(&image.position_m);
+            let by_gps_m = source.fix().map_or(place.altitude_m, |fix| fix.place.altitude_m);
+            let gps_ms = gps_ms_at(vehicle, image.time_us);
+            let [roll, pitch, yaw] = image.attitude_rad.data.0[0].map(f64::to_degrees);
+            let number = f64::from(image.trigger & u32::from(u16::MAX));
+            let when =
+                [image.time_us as f64, 0.0, number, (gps_ms % WEEK_MS) as f64, (gps_ms / WEEK_MS) as f64];
+            let above_home_m = image.home_z_m - image.position_m.z;
+            let at = [place.latitude_deg, place.longitude_deg, place.altitude_m, above_home_m, by_gps_m];
+            let values: Vec<f64> =
+                when.into_iter().chain(at).chain([roll, pitch, yaw.rem_euclid(360.0)]).collect();
+            numbers(into, CAM, CAM_KINDS, &values);
+        }
     }
 
     fn look_at_causes(&mut self, into: &mut Vec<u8>, source: &LogSource<'_>) {

@@ -1,5 +1,6 @@
 //! What the instruments show.
 
+use vehicle::Vehicle;
 use vehicle::estimation::gps::{HORIZONTAL_DILUTION, VERTICAL_DILUTION};
 use vehicle::surroundings::FARTHEST_RANGE_M;
 
@@ -12,17 +13,21 @@ const NO_FIX: f64 = 1.0;
 const FIX_3D: f64 = 3.0;
 /// From 1970 to the begin of GPS time, with the leap seconds since then, s.
 const GPS_EPOCH_S: u64 = 315_964_800 - 18;
-const WEEK_MS: u64 = 7 * 24 * 3600 * 1000;
+pub const WEEK_MS: u64 = 7 * 24 * 3600 * 1000;
 
 /// A value of the fix; 0 without one.
 fn of_fix(source: &LogSource<'_>, value: fn(&LoggedFix) -> f64) -> f64 {
     source.fix().as_ref().map_or(0.0, value)
 }
 
-/// Time of GPS, ms.
+/// Time of GPS now, ms.
 fn gps_ms(source: &LogSource<'_>) -> u64 {
-    let now_us = source.vehicle.unix_start_us() + source.vehicle.time_us();
-    (now_us / 1000).saturating_sub(GPS_EPOCH_S * 1000)
+    gps_ms_at(source.vehicle, source.vehicle.time_us())
+}
+
+/// Time of GPS at a time of the simulation, µs; ms.
+pub fn gps_ms_at(vehicle: &Vehicle, time_us: u64) -> u64 {
+    ((vehicle.unix_start_us() + time_us) / 1000).saturating_sub(GPS_EPOCH_S * 1000)
 }
 
 fn time_ms(source: &LogSource<'_>) -> f64 {
