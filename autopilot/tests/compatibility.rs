@@ -2,7 +2,7 @@
 
 use autopilot::Autopilot;
 use autopilot::codec::{Frame, Message, Version, command_long};
-use autopilot::compatibility::{Carried, commands, modes, page};
+use autopilot::compatibility::{Carried, CommandRow, commands, modes, page};
 use autopilot::envelope::{LinkProfile, Origin, PeerId};
 use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage};
 use num_traits::FromPrimitive;
@@ -57,7 +57,9 @@ fn commands_are_answered_as_the_table_says() {
     ];
     for identity in [Identity::Px4, Identity::ArduPilot] {
         let mut wrong = Vec::new();
-        for (row, sequence) in commands().iter().zip((0..=u8::MAX).cycle()) {
+        // What is newer than the dialect is an item of fences only.
+        let named = |row: &&CommandRow| MavCmd::from_u16(row.number).is_some();
+        for (row, sequence) in commands().iter().filter(named).zip((0..=u8::MAX).cycle()) {
             let asked = ASKED.iter().find(|(number, _)| *number == row.number);
             let parameters = asked.map_or([0.0; 3], |(_, parameters)| *parameters);
             let result = ask(&mut vehicle(identity), sequence, row.number, parameters);

@@ -9,18 +9,18 @@ use super::command::told_place;
 use super::{CommandEntry, Outcome, Progress, Service};
 use crate::codec::{Command, scaled_degrees};
 use crate::context::Context;
-use crate::envelope::{Destination, Origin};
-
-/// PX4's rate of the status, as a period, µs.
-const PERIOD_US: u64 = 500_000;
+use crate::envelope::Origin;
+use crate::stream::{Build, Stream};
 
 const COMMANDS: &[CommandEntry] = &[CommandEntry::action(MavCmd::MAV_CMD_DO_ORBIT as u16)];
 
+/// PX4's rates of the status, Hz.
+const STREAMS: &[Stream] =
+    &[Stream::when(ORBIT_EXECUTION_STATUS_DATA::ID, [2.0, 5.0], Build::Perhaps(status))];
+
 /// Takes orbits, and tells of them.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Orbits {
-    due_us: u64,
-}
+#[derive(Clone, Copy, Debug)]
+pub struct Orbits;
 
 impl Service for Orbits {
     fn summary(&self) -> &'static str {
@@ -31,8 +31,8 @@ impl Service for Orbits {
         COMMANDS
     }
 
-    fn answers(&self) -> &'static [u32] {
-        &[ORBIT_EXECUTION_STATUS_DATA::ID]
+    fn streams(&self) -> &'static [Stream] {
+        STREAMS
     }
 
     fn command(&mut self, context: &mut Context, _origin: &Origin, command: &Command) -> Outcome {
@@ -44,17 +44,6 @@ impl Service for Orbits {
         let request = request(command, vehicle)?;
         vehicle.orbit(&request)?;
         Ok(Progress::Done)
-    }
-
-    fn tick(&mut self, context: &mut Context) {
-        let time_us = context.vehicle.time_us();
-        if time_us < self.due_us {
-            return;
-        }
-        if let Some(message) = status(&context.vehicle) {
-            self.due_us = time_us + PERIOD_US;
-            context.outbox.send(Destination::Everyone, message);
-        }
     }
 }
 

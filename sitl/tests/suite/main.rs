@@ -39,6 +39,7 @@ mod lossy;
 mod mission;
 mod mission_control;
 mod mission_items;
+mod mission_return;
 mod navigation_commands;
 mod noise;
 mod obstacles;

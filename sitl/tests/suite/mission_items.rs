@@ -156,3 +156,60 @@ fn what_is_not_carried_is_passed_by_and_said() {
     );
     assert_eq!(common::plan_client::result(&heard), Some(6), "MAV_MISSION_INVALID_PARAM1");
 }
+
+/// PX4: what stands behind CONDITION_GATE is done when the plane is crossed, and the vehicle flies on without a stop.
+#[test]
+fn what_is_behind_a_gate_waits_until_it_is_crossed() {
+    let gate_m = 20.0;
+    let items = [
+        takeoff(),
+        waypoint([0.0, 0.0, -10.0]),
+        at(command::CONDITION_GATE, [0.0; 4], [gate_m, 5.0, -10.0]),
+        simple(command::DO_CHANGE_SPEED, [1.0, 2.0, -1.0, 0.0]),
+        waypoint([60.0, 0.0, -10.0]),
+    ];
+    let flight = Flight::new(&items).complete(90.0);
+    assert_eq!(flight.order(), [0, 1, 2, 3, 4]);
+    let crossed = flight.track.iter().find(|(time_s, ..)| *time_s >= flight.time_of(3)).expect("done").1;
+    // It lies beside the way, so that the plane does not stand across it.
+    assert!((crossed.x - gate_m).abs() < 1.5, "{crossed}");
+    let speed = |from_m: f64| {
+        let from = flight.track.iter().position(|(_, at, _)| at.x > from_m).expect("flown");
+        (flight.track[from + 10].1 - flight.track[from].1).norm() / 0.1
+    };
+    assert!(speed(gate_m - 2.0) > 3.0 && (speed(40.0) - 2.0).abs() < 0.2, "{} {}", speed(18.0), speed(40.0));
+}
+
+/// PX4 takes NAV_ROI for DO_SET_ROI, which it was called before.
+#[test]
+fn the_nose_points_to_a_region_by_its_older_name() {
+    let region = [20.0, 30.0, 0.0];
+    let items = [
+        takeoff(),
+        at(command::NAV_ROI, [3.0, 0.0, 0.0, 0.0], region),
+        waypoint([20.0, 0.0, -10.0]),
+        waypoint([40.0, 0.0, -10.0]),
+    ];
+    let flight = Flight::new(&items).complete(60.0);
+    let there = flight.track.iter().find(|(_, at, _)| at.x > 19.5).expect("flown");
+    assert!((there.2.to_degrees() - 90.0).abs() < 8.0, "{} deg", there.2.to_degrees());
+}
+
+/// MPC_YAW_MODE 4: the nose turns before the vehicle flies; with 0 it does so on the way.
+#[test]
+fn the_nose_turns_to_a_place_before_it_is_flown_to() {
+    let fly = |mode: f64| {
+        let items = [takeoff(), waypoint([30.0, 0.0, -10.0]), waypoint([30.0, 30.0, -10.0])];
+        let mut flight = Flight::of(Identity::Px4, &items);
+        common::failsafe_bench::set(&mut flight.bench, "MPC_YAW_MODE", mode);
+        flight.bench.arm();
+        assert_eq!(flight.bench.set_mode(Mode::Mission), 0);
+        let flight = flight.complete(90.0);
+        let leaves = flight.track.iter().find(|(_, at, _)| at.y > 1.0).expect("flown");
+        (leaves.2.to_degrees(), flight.nearest([30.0, 0.0, -10.0]))
+    };
+    let (turned_deg, nearest_m) = fly(4.0);
+    assert!((turned_deg - 90.0).abs() < 14.0 && nearest_m < 0.3, "{turned_deg} deg, {nearest_m} m");
+    let (turned_deg, nearest_m) = fly(0.0);
+    assert!(turned_deg < 70.0 && nearest_m > 0.3, "{turned_deg} deg, {nearest_m} m");
+}

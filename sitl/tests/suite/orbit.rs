@@ -115,6 +115,12 @@ fn yaw_behaviours_are_kept_and_the_status_is_told() {
     };
     let told: Vec<_> = bench.heard.iter().filter_map(status).collect();
     assert!((3..=5).contains(&told.len()), "{}", told.len());
+    // ORBIT_EXECUTION_STATUS at ten per second, as clients can ask.
+    let often = [360.0, 100_000.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, often), 0);
+    bench.heard.clear();
+    bench.fly(1.0);
+    assert!((9..=11).contains(&bench.heard.iter().filter_map(status).count()));
     let centre = bench.autopilot.vehicle().frame().to_geodetic(&Vector3::new(10.0, 0.0, z));
     assert!((f64::from(told[0].x) / 1e7 - centre.latitude_deg).abs() < 1e-6 && told[0].radius == 10.0);
     assert!((f64::from(told[0].z) - centre.altitude_m).abs() < 0.1, "{} {}", told[0].z, centre.altitude_m);

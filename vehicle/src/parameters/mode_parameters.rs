@@ -132,7 +132,9 @@ const CONE_ANGLES: &[(i32, &str)] = &[
 const RETURN_GOALS: &[(ReturnGoal, i32, &str)] = &[
     (ReturnGoal::Nearest, 0, "Home or a rally point, whichever is nearer"),
     (ReturnGoal::RallyPoint, 1, "Nearest rally point, or else home"),
+    (ReturnGoal::Mission, 2, "Along the mission to its landing, or back along it"),
     (ReturnGoal::NearestOfAll, 3, "Nearest of all places"),
+    (ReturnGoal::MissionOrBack, 4, "Along the mission to its landing or back, whichever passes fewer items"),
     (ReturnGoal::RallyPointOnly, 5, "Nearest rally point"),
     (ReturnGoal::WithinReach, 6, "As 0: the remaining battery time is not known"),
 ];
@@ -141,6 +143,7 @@ const PX4_HEADINGS: &[(HeadingPolicy, i32, &str)] = &[
     (HeadingPolicy::Home, 1, "Towards home"),
     (HeadingPolicy::AwayFromHome, 2, "Away from home"),
     (HeadingPolicy::Travel, 3, "Along the trajectory"),
+    (HeadingPolicy::NextPlaceFirst, 4, "Towards the waypoint, before a mission flies there"),
     (HeadingPolicy::Hold, 5, "Fixed"),
 ];
 const ARDUPILOT_HEADINGS: &[(HeadingPolicy, i32, &str)] = &[

@@ -102,6 +102,8 @@ static MISSION_COMMANDS: &[MissionCommand] = &[
         place: PlaceRule::None, needed: &[1], whole: &[], ranges: &[(1, "delay", 0.0, LONGEST_S)] },
     MissionCommand { number: CONDITION_DISTANCE, step: |source| Step::Condition(Condition::Distance(source.value(1))),
         place: PlaceRule::None, needed: &[1], whole: &[], ranges: &[(1, "distance", 0.0, 1e5)] },
+    MissionCommand { number: CONDITION_GATE, step: gate, place: PlaceRule::Mark, needed: &[5, 6], whole: &[], ranges: &[
+        (1, "geometry", 0.0, 0.0)] },
     MissionCommand { number: CONDITION_YAW, step: turn, place: PlaceRule::None, needed: &[1], whole: &[], ranges: &[
         (1, "angle", -TURNED, TURNED), (2, "rate", 0.0, 360.0), (3, "direction", -1.0, 1.0),
         (4, "relative", 0.0, 1.0)] },
@@ -120,6 +122,9 @@ static MISSION_COMMANDS: &[MissionCommand] = &[
     MissionCommand { number: DO_SET_ROI_NONE, step: |_| Step::Do(Do::Look(None)),
         place: PlaceRule::None, needed: &[], whole: &[], ranges: &[] },
     MissionCommand { number: DO_SET_ROI, step: region_of_interest, place: PlaceRule::None, needed: &[], whole: &[1], ranges: &[
+        (1, "kind", 0.0, 3.0)] },
+    // What DO_SET_ROI was before.
+    MissionCommand { number: NAV_ROI, step: region_of_interest, place: PlaceRule::None, needed: &[], whole: &[1], ranges: &[
         (1, "kind", 0.0, 3.0)] },
 ];
 
@@ -268,6 +273,11 @@ fn set_home(source: &Source<'_>) -> Step {
     let named = source.value(1) < 0.5;
     let place = source.site.place(source.item).filter(|place| named && place.horizontal_m.is_some());
     Step::Do(Do::SetHome(place))
+}
+
+/// CONDITION_GATE: where the plane lies that is to be crossed.
+fn gate(source: &Source<'_>) -> Step {
+    source.place().horizontal_m.map_or(Step::Pass, |place_m| Step::Condition(Condition::Gate(place_m)))
 }
 
 fn look_ahead(source: &Source<'_>) -> Step {

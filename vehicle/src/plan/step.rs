@@ -138,6 +138,8 @@ pub enum Condition {
     Delay(f64),
     /// So near to the end of the leg, m.
     Distance(f64),
+    /// Beyond the upright plane through a place, north and east, m, across the way from there to the end of the leg.
+    Gate([f64; 2]),
     /// The end of a turn.
     Yaw(Turn),
 }

@@ -20,7 +20,9 @@ pub fn zones(items: &[MissionItem], site: &Site) -> Result<Zones, PlanFault> {
                 zones.return_m = Some(point(index, item, site)?);
                 index += 1;
             }
-            command::NAV_FENCE_CIRCLE_INCLUSION | command::NAV_FENCE_CIRCLE_EXCLUSION => {
+            command::NAV_FENCE_CIRCLE_INCLUSION
+            | command::NAV_FENCE_CIRCLE_EXCLUSION
+            | command::NAV_FENCE_HOME_CIRCLE_INCLUSION => {
                 zones.zones.push(circle(index, item, site)?);
                 index += 1;
             }
@@ -48,8 +50,12 @@ fn circle(index: usize, item: &MissionItem, site: &Site) -> Result<Zone, PlanFau
         let reason = format!("radius = {radius_m} m; allowed {SMALLEST_RADIUS_M} to {LARGEST_RADIUS_M} m");
         return Err(PlanFault::of_item(index, FaultCode::InvalidParameter(1), reason));
     }
-    let shape = Shape::Circle { centre_m: point(index, item, site)?, radius_m };
-    Ok(Zone { shape, inclusion: item.command == command::NAV_FENCE_CIRCLE_INCLUSION })
+    let centre_m = match item.command {
+        command::NAV_FENCE_HOME_CIRCLE_INCLUSION => [site.home_m.x, site.home_m.y],
+        _ => point(index, item, site)?,
+    };
+    let inclusion = item.command != command::NAV_FENCE_CIRCLE_EXCLUSION;
+    Ok(Zone { shape: Shape::Circle { centre_m, radius_m }, inclusion })
 }
 
 fn corner_count(index: usize, item: &MissionItem) -> Result<usize, PlanFault> {

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::button::ButtonSettings;
 use super::channel::Channel;
+use super::knob::Knobs;
 
 /// Channels of the sticks, from 1; 0: none.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -119,6 +120,9 @@ pub struct RadioSettings {
     /// Buttons beside the radio.
     #[serde(default)]
     pub buttons: ButtonSettings,
+    /// Knobs that change values in flight.
+    #[serde(default)]
+    pub knobs: Knobs,
 }
 
 impl Default for RadioSettings {
@@ -158,6 +162,7 @@ impl RadioSettings {
             take_over_percent: 30.0,
             failure: RadioFailure::None,
             buttons: ButtonSettings::default(),
+            knobs: Knobs::default(),
         }
     }
 

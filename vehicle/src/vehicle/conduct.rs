@@ -197,9 +197,9 @@ fn thrust_as_thrust() -> u8 {
 /// | way home | PX4: 30 m to wait at, a cone of 45°; ArduPilot: 5 s above home, a cone of slope 3 | theirs |
 /// | heading on the way | to the next place, ArduPilot not on the way home | theirs |
 /// | acceptance radius | 2 m | theirs, for copters |
-/// | land speed | 0.7 m/s | PX4's |
+/// | land speed | 0.7 m/s below 2 m; ArduPilot 0.5 m/s below 10 m | theirs, but that PX4 is slow below 5 m |
 /// | disarm | 2 s after landing, 10 s before takeoff | PX4's |
-/// | sticks | 5 m/s (ArduPilot 12.5), up 2, down 1.5 m/s, 0.5 s (ArduPilot 1 s) | theirs, within our limits of speed |
+/// | sticks | 5 m/s (ArduPilot 12.5), up 2, down 1.5 m/s (ArduPilot 2.5 both), 0.5 s (ArduPilot 1 s) | theirs, within our limits of speed |
 /// | battery | 2.2 A·h of three cells | half an hour for 0.7 kg |
 /// | failure injection | not allowed; ArduPilot: allowed | PX4's; ArduPilot has no such parameter |
 impl Conduct {
@@ -227,15 +227,15 @@ impl Conduct {
             return_height_m: if ardupilot { 15.0 } else { 30.0 },
             acceptance_radius_m: 2.0,
             return_near_m: 10.0,
-            land_speed_m_s: 0.7,
-            land_slow_below_m: two(),
+            land_speed_m_s: if ardupilot { 0.5 } else { 0.7 },
+            land_slow_below_m: if ardupilot { 10.0 } else { two() },
             land_fast_m_s: 0.0,
             speeds: SpeedSettings::default(),
             disarm_after_landing_s: 2.0,
             disarm_before_takeoff_s: 10.0,
             stick_speed_m_s: if ardupilot { 12.5 } else { 5.0 },
-            stick_climb_m_s: 2.0,
-            stick_sink_m_s: 1.5,
+            stick_climb_m_s: if ardupilot { 2.5 } else { 2.0 },
+            stick_sink_m_s: if ardupilot { 0.0 } else { 1.5 },
             stick_timeout_s: if ardupilot { 1.0 } else { 0.5 },
             battery_capacity_ah: BatteryPack::default().capacity_ah,
             battery_to_arm: 0.15,

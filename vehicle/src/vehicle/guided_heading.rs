@@ -49,7 +49,7 @@ impl HeadingPolicy {
     pub fn guided(self, situation: &Situation) -> Option<(f64, f64)> {
         let outputs = situation.outputs;
         match self {
-            Self::NextPlace | Self::NextPlaceExceptReturn => {
+            Self::NextPlace | Self::NextPlaceFirst | Self::NextPlaceExceptReturn => {
                 // ψ = atan2(v_y, v_x),  ψ̇ = (v_x a_y − v_y a_x) / (v_x² + v_y²)
                 let (v, a) = (outputs.setpoint.velocity_m_s.xy(), outputs.setpoint.acceleration_m_s2.xy());
                 let rate_rad_s = (v.x * a.y - v.y * a.x) / v.norm_squared();

@@ -10,6 +10,8 @@ pub enum HeadingPolicy {
     /// To the next place.
     #[default]
     NextPlace,
+    /// To the next place, and a mission's legs begin when the nose is there.
+    NextPlaceFirst,
     /// To the next place, and on the way home anywhere.
     NextPlaceExceptReturn,
     /// Anywhere: it is not turned.
@@ -49,7 +51,7 @@ impl HeadingPolicy {
         let home_rad = (way.norm() > TOO_NEAR_M).then(|| libm::atan2(way.y, way.x));
         match self {
             Self::NextPlaceExceptReturn if purpose == Purpose::Return => None,
-            Self::NextPlace | Self::NextPlaceExceptReturn => Some(next_rad),
+            Self::NextPlace | Self::NextPlaceFirst | Self::NextPlaceExceptReturn => Some(next_rad),
             Self::Hold => None,
             Self::Home => home_rad,
             Self::AwayFromHome => home_rad.map(|home_rad| home_rad + core::f64::consts::PI),

@@ -5,8 +5,8 @@ use super::situation::Situation;
 use super::sticks::Sticks;
 use crate::mode::{Leader, Mode};
 use crate::radio::{
-    Debounced, Function, GIMBAL_AXES, PX4_SLOTS, Position, RadioSettings, RudderArming, function, position,
-    sixth,
+    Debounced, Function, GIMBAL_AXES, KNOBS, PX4_SLOTS, Position, RadioSettings, RudderArming, function,
+    position, sixth,
 };
 
 /// A stick at this share of its way is at the end.
@@ -118,7 +118,7 @@ impl PilotWatch {
         for ((channel, pulse), seen) in channels.filter(|((channel, _), _)| channel.option > 0.0) {
             let Some(now) = position(*pulse) else { continue };
             let number = channel.option as u32;
-            if GIMBAL_AXES.contains(&number) {
+            if GIMBAL_AXES.contains(&number) || KNOBS.contains(&number) {
                 continue;
             }
             let Some((before, now)) = seen.see(now, time_us) else { continue };

@@ -7,7 +7,7 @@ use super::situation::Situation;
 use crate::fence::{Breach, Fence, Zones};
 use crate::plan::step::Navigate;
 use crate::plan::{
-    FaultCode, MissionItem, Place, Plan, PlanFault, PlanKind, Plans, Program, Site, compile, zones,
+    FaultCode, MissionItem, Place, Plan, PlanFault, PlanKind, Plans, Program, Site, command, compile, zones,
 };
 use crate::world::FARTHEST_M;
 
@@ -66,6 +66,21 @@ impl KnownPlans {
         Ok(())
     }
 
+    /// Whether the fence moves with home.
+    pub fn fence_moves_with_home(&self) -> bool {
+        let items = self.plans.get(PlanKind::Fence).items();
+        items.iter().any(|item| item.command == command::NAV_FENCE_HOME_CIRCLE_INCLUSION)
+    }
+
+    /// Home has moved, and what of the fence lies around it.
+    pub fn follow_home(&mut self, site: &Site) {
+        let items = self.plans.get(PlanKind::Fence).items();
+        match zones(items, site) {
+            Ok(zones) => self.zones = zones,
+            Err(fault) => tracing::warn!(?fault, "the fence stays where it was"),
+        }
+    }
+
     /// Replaces the rally points.
     pub fn take_rally_points(&mut self, items: Vec<MissionItem>, points: Vec<Place>) {
         self.rally_points = points;
@@ -78,12 +93,20 @@ impl KnownPlans {
     }
 }
 
-/// Refuses a mission whose places the fence of now forbids, or the ways between them: the fence may have come after the mission. It begins
-/// at home, or where the vehicle flies now.
+/// Refuses a mission that the fence of now forbids, as PX4 does. ArduPilot flies it up to the fence, and does there what FENCE_ACTION says.
 ///
 /// # Errors
 /// [`PlanFault`] that names the item.
 pub fn check_way(situation: &Situation, program: &Program, from_here: bool) -> Result<(), PlanFault> {
+    if situation.identity.is_ardupilot() { Ok(()) } else { keeps_inside(situation, program, from_here) }
+}
+
+/// Finds the place of a mission that the fence of now forbids, or the way there: the fence may have come after the mission. It begins
+/// at home, or where the vehicle flies now.
+///
+/// # Errors
+/// [`PlanFault`] that names the item.
+pub fn keeps_inside(situation: &Situation, program: &Program, from_here: bool) -> Result<(), PlanFault> {
     let Some(fence) = situation.fence().filter(Fence::bounds) else { return Ok(()) };
     let home_m = situation.home.position_m;
     let mut before_m = if from_here && situation.flies() { situation.outputs.position_m } else { home_m };

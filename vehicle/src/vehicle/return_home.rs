@@ -1,6 +1,7 @@
 //! The way home: climb, travel, wait, descend.
 //!
 //! ```text
+//!  Along ───────────────────────────────────────► Descend   PX4 along the mission
 //!  Climb ─► Travel ─┬─────────────────────────────► Descend
 //!                   ├─► Lower ─► Wait ─────────────► Descend   PX4 with RTL_LAND_DELAY
 //!                   └─► Wait ─┬────────────────────► Descend   ArduPilot
@@ -14,9 +15,11 @@ use nalgebra::Vector3;
 use super::descent::descend;
 use super::ground_way::{GroundWay, headed};
 use super::heading_policy::{HeadingPolicy, Purpose};
+use super::mission_return::MissionReturn;
 use super::motion::wrapped;
 use super::notice::Severity;
 use super::proposal::Proposal;
+use super::return_goals::{distance_m, safe_points_m};
 use super::return_height::{follows_ground, way_z_m};
 use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
 use super::situation::Situation;
@@ -32,6 +35,8 @@ enum Phase {
     /// To the height of the way.
     #[default]
     Climb,
+    /// Along the places of the mission.
+    Along,
     /// Above the place to land at.
     Travel,
     /// Down to the height at which it waits.
@@ -63,6 +68,8 @@ pub struct Return {
     search: Option<RouteSearch>,
     /// What is left of the way: north and east, m, the place to land at last. Empty until it is found.
     way_m: VecDeque<[f64; 2]>,
+    /// What is left of the mission's places, NED, m.
+    places_m: VecDeque<Vector3<f64>>,
     /// Height of the way, z, m.
     way_z_m: f64,
     /// The part of it that follows the ground, and the piece of its curve.
@@ -88,6 +95,24 @@ impl Return {
         }
     }
 
+    /// Begins a way along the mission.
+    pub fn begin_along(&mut self, way: MissionReturn, situation: &Situation, proposal: &mut Proposal) {
+        let way_m = [way.landing_m].into();
+        *self = Self { phase: Phase::Along, places_m: way.places_m, way_m, ..Self::default() };
+        self.go_along(situation, proposal);
+    }
+
+    /// To the next of the mission's places, with the nose there; above the last it lands.
+    fn go_along(&mut self, situation: &Situation, proposal: &mut Proposal) {
+        let Some(place_m) = self.places_m.pop_front() else {
+            self.phase = Phase::Descend;
+            proposal.say(Severity::Info, "At the end of the mission's way: landing");
+            return;
+        };
+        go_to([place_m.x, place_m.y], place_m.z, situation, proposal);
+        turn_on_the_way(situation, proposal);
+    }
+
     /// One tick of the way home.
     pub fn step(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let travels = matches!(self.phase, Phase::Climb | Phase::Travel);
@@ -97,6 +122,8 @@ impl Return {
         self.search_on(situation, proposal);
         let reached = || goal_is_reached(situation, proposal.steering());
         match self.phase {
+            Phase::Along if reached() => self.go_along(situation, proposal),
+            Phase::Along => turn_on_the_way(situation, proposal),
             // It waits there for the way.
             Phase::Climb if !self.way_m.is_empty() && reached() => {
                 self.phase = Phase::Travel;
@@ -295,37 +322,9 @@ fn goal_is_reached(situation: &Situation, steering: &Steering) -> bool {
     (outputs.position_m - goal.position_m).norm() < REACHED_M && outputs.velocity_m_s.norm() < SLOW_M_S
 }
 
-/// Where a return may go: home, the rally points and the fence's return point, as far as the fence allows them, the nearest
-/// first. North and east, m.
-fn safe_points_m(situation: &Situation) -> VecDeque<[f64; 2]> {
-    let home = situation.home.position_m;
-    let is_free = |[x, y]: &[f64; 2]| situation.breach_at(&Vector3::new(*x, *y, home.z)).is_none();
-    let rally = situation.rally_points.iter().filter_map(|place| place.horizontal_m);
-    let rally: Vec<[f64; 2]> = rally.filter(is_free).collect();
-    let by_distance = |points: &mut Vec<[f64; 2]>| {
-        points.sort_by(|one, other| distance_m(situation, *one).total_cmp(&distance_m(situation, *other)));
-    };
-    let others = core::iter::once([home.x, home.y]).chain(situation.zones.return_m).filter(is_free);
-    if situation.conduct.return_home.goal.prefers_rally_points() {
-        let (mut first, mut then) = (rally, others.collect());
-        by_distance(&mut first);
-        by_distance(&mut then);
-        return first.into_iter().chain(then).collect();
-    }
-    let mut points: Vec<[f64; 2]> = others.chain(rally).collect();
-    by_distance(&mut points);
-    points.into()
-}
-
-/// Horizontal distance of a place, m.
-fn distance_m(situation: &Situation, [x, y]: [f64; 2]) -> f64 {
-    let here = situation.outputs.position_m;
-    libm::hypot(x - here.x, y - here.y)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::Return;
+    use super::{Return, safe_points_m};
     use crate::fence::{Shape, Zone};
     use crate::identity::Identity;
     use crate::plan::Place;
@@ -399,7 +398,7 @@ mod tests {
         scene.rally_points = vec![Place { horizontal_m, altitude: None }];
         let mut goal = |goal| {
             scene.conduct.return_home.goal = goal;
-            super::safe_points_m(&scene.situation()).front().copied()
+            safe_points_m(&scene.situation()).front().copied()
         };
         assert_eq!(goal(ReturnGoal::Nearest), Some([0.0, 0.0]));
         assert_eq!(goal(ReturnGoal::RallyPoint), Some([50.0, 0.0]));

@@ -18,6 +18,10 @@ pub enum ReturnGoal {
     /// Home while the battery lasts for it, else the nearest rally point: as [`Self::Nearest`], which is what PX4 does in a simulation,
     /// where it has no time that the battery lasts.
     WithinReach,
+    /// On along the mission to its landing, else back along it to home.
+    Mission,
+    /// As [`Self::Mission`], or back along it also where it has a landing, whichever passes fewer items.
+    MissionOrBack,
 }
 
 impl ReturnGoal {

@@ -15,7 +15,8 @@ use super::{Bench, settings};
 pub const TEMPORARILY_REJECTED: u8 = 1;
 
 pub fn set(bench: &mut Bench, id: &str, value: f64) {
-    let integer = known_parameters().any(|known| known.id == id && known.integer);
+    let table = bench.autopilot.parameter_table();
+    let integer = table.find(id).is_some_and(|known| known.describe().whole);
     let ardupilot = bench.autopilot.identity().is_ardupilot();
     // PX4's integers travel bytewise.
     let (param_value, param_type) = if integer && !ardupilot {

@@ -1,8 +1,10 @@
 //! The fence, and sticks that do not lead over it.
 
 use super::flier::*;
+use crate::common::plan_client::{result, upload};
 use crate::common::settings;
-use mavlink::dialects::ardupilotmega::MavCmd;
+use mavlink::dialects::ardupilotmega::{COMMAND_INT_DATA, MavCmd, MavFrame, MavMessage};
+use nalgebra::Vector3;
 use vehicle::identity::Identity;
 use vehicle::plan::{MissionItem, Plan, PlanKind, command, frame};
 
@@ -227,4 +229,138 @@ fn heights_of_the_fence_are_above_what_is_said() {
         flier.rc(3, 1000);
         flier.wait_disarmed(300.0);
     }
+}
+
+/// Circles around home of some radii, m.
+fn home_circles(flier: &mut Flier, radii_m: &[f64]) {
+    let circle = |radius_m: &f64| MissionItem {
+        frame: frame::GLOBAL,
+        command: 5005,
+        parameters: [*radius_m, 0.0, 0.0, 0.0],
+        position: [0.0; 3],
+        autocontinue: false,
+    };
+    let items: Vec<_> = radii_m.iter().map(circle).collect();
+    let heard = upload(&mut flier.bench, PlanKind::Fence, &items);
+    assert_eq!(result(&heard), Some(ACCEPTED), "{:?}", flier.bench.texts());
+    assert_eq!(flier.vehicle().plans().get(PlanKind::Fence).items().len(), radii_m.len());
+}
+
+/// Moves home north and east, m, from where it is.
+fn move_home(flier: &mut Flier, [north_m, east_m]: [f64; 2]) {
+    let home_m = flier.vehicle().home().position_m;
+    let place = flier.vehicle().frame().to_geodetic(&(home_m + Vector3::new(north_m, east_m, 0.0)));
+    let set_home = COMMAND_INT_DATA {
+        param1: 0.0,
+        param2: 0.0,
+        param3: 0.0,
+        param4: 0.0,
+        x: (place.latitude_deg * 1e7).round() as i32,
+        y: (place.longitude_deg * 1e7).round() as i32,
+        z: place.altitude_m as f32,
+        command: MavCmd::MAV_CMD_DO_SET_HOME,
+        target_system: 1,
+        target_component: 1,
+        frame: MavFrame::MAV_FRAME_GLOBAL,
+        current: 0,
+        autocontinue: 0,
+    };
+    flier.bench.heard.clear();
+    flier.bench.send(MavMessage::COMMAND_INT(set_home));
+    assert_eq!(flier.bench.acks().last().map(|ack| ack.result), Some(ACCEPTED));
+}
+
+const POLYGONS: [(&str, f64); 3] = [("FENCE_ENABLE", 1.0), ("FENCE_ACTION", 1.0), ("FENCE_TYPE", 4.0)];
+
+/// Suite: HomeCircleInclusionFence: a mission is taken that leads over the fence, and flown up to it.
+#[test]
+fn a_mission_is_flown_up_to_a_circle_around_home() {
+    const WAYPOINT: u16 = 16;
+    let rows = [(22, 0.0, 0.0, 20.0), (WAYPOINT, -25.0, -25.0, 25.0), (WAYPOINT, -100.0, -100.0, 25.0)];
+    let mut flier = Flier::new();
+    home_circles(&mut flier, &[50.0]);
+    flier.set_all(&POLYGONS);
+    flier.set("AUTO_OPTIONS", 3.0);
+    flier.reboot();
+    let items = mission(&settings(Identity::ArduPilot), &rows).items().to_vec();
+    let heard = upload(&mut flier.bench, PlanKind::Mission, &items);
+    assert_eq!(result(&heard), Some(ACCEPTED), "{:?}", flier.bench.texts());
+    flier.change_mode(AUTO);
+    flier.arm();
+    flier.bench.heard.clear();
+    flier.wait_text("Polygon fence breached", 90.0);
+    assert!((48.0..60.0).contains(&flier.distance_m()), "{}", flier.distance_m());
+    flier.wait_mode(RTL, 1.0);
+    flier.rc(3, 1500);
+    flier.wait_home();
+}
+
+/// Suite: HomeCircleInclusionFence_SetHome, HomeCircleInclusionFence_MultipleHomeCircle.
+#[test]
+fn a_circle_around_home_moves_with_it_and_the_innermost_counts() {
+    let mut flier = Flier::new();
+    flier.set_all(&POLYGONS);
+    home_circles(&mut flier, &[50.0]);
+    flier.take_off(5.0, LOITER);
+    flier.fly(2.0);
+    assert_eq!(flier.mode(), LOITER);
+    move_home(&mut flier, [60.0, 0.0]);
+    flier.wait_text("Polygon fence breached", 3.0);
+    flier.wait_mode(RTL, 1.0);
+    flier.rc(3, 1500);
+    flier.wait_home();
+    let mut flier = Flier::new();
+    flier.set_all(&POLYGONS);
+    // Its pilot flies in Stabilize, where nothing keeps the sticks inside.
+    flier.set_all(&[("AVOID_ENABLE", 0.0), ("GF_PREDICT", 0.0)]);
+    home_circles(&mut flier, &[50.0, 100.0]);
+    flier.take_off(5.0, LOITER);
+    flier.rc(2, 1200);
+    flier.bench.heard.clear();
+    flier.wait_text("Polygon fence breached", 60.0);
+    assert!((40.0..60.0).contains(&flier.distance_m()), "{}", flier.distance_m());
+    flier.rc(2, 1500);
+    flier.wait_home();
+}
+
+/// Suite: HomeCircleInclusionFence_Avoidance_SetHome.
+#[test]
+fn sticks_do_not_lead_over_a_circle_around_home() {
+    let mut flier = Flier::new();
+    home_circles(&mut flier, &[20.0]);
+    flier.set_all(&POLYGONS);
+    flier.set_all(&[
+        ("FENCE_ACTION", 0.0),
+        ("FENCE_MARGIN", 2.0),
+        ("AVOID_ENABLE", 1.0),
+        ("AVOID_BEHAVE", 0.0),
+    ]);
+    flier.take_off(10.0, LOITER);
+    flier.rc(2, 1300);
+    for step_m in [0.0, 10.0] {
+        move_home(&mut flier, [step_m, 0.0]);
+        flier.fly(20.0);
+        for _ in 0..20 {
+            flier.fly(1.0);
+            assert!((17.0..21.0).contains(&flier.distance_m()), "{}", flier.distance_m());
+        }
+        assert!(flier.speed_m_s() < 0.5);
+    }
+}
+
+/// PX4 has a parameter in its place.
+#[test]
+fn a_circle_around_home_is_ardupilots() {
+    let mut bench = crate::common::Bench::new(Identity::Px4);
+    let circle = MissionItem {
+        frame: frame::GLOBAL,
+        command: 5005,
+        parameters: [50.0, 0.0, 0.0, 0.0],
+        position: [0.0; 3],
+        autocontinue: false,
+    };
+    let heard = upload(&mut bench, PlanKind::Fence, &[circle]);
+    assert_eq!(result(&heard), Some(3), "MAV_MISSION_UNSUPPORTED");
+    bench.heard = heard;
+    assert!(bench.texts().iter().any(|text| text.contains("GF_MAX_HOR_DIST")), "{:?}", bench.texts());
 }

@@ -9,6 +9,7 @@ mod fences;
 mod flier;
 mod gps_input;
 mod guided;
+mod knobs;
 mod missions;
 mod modes;
 mod payload;

@@ -280,3 +280,20 @@ fn an_armed_vehicle_without_a_place_enters_no_mode_that_needs_one() {
     assert!(flier.has_said("requires position"), "{:?}", flier.bench.texts());
     flier.change_mode(ALT_HOLD);
 }
+
+/// Suite: HomeAltResetTest, its speeds: down with WP_SPD_DN to LAND_ALT_LOW_M, and from there with LAND_SPD_MS, by the defaults of
+/// ArduCopter.
+#[test]
+fn a_landing_is_slow_from_ten_metres_on() {
+    let mut flier = Flier::new();
+    flier.take_off(30.0, LOITER);
+    flier.change_mode(LAND);
+    flier.wait("14 m", 30.0, |flier| flier.height_m() < 14.0);
+    assert!(flier.climb_m_s() < -2.0, "{}", flier.climb_m_s());
+    flier.wait("9 m", 20.0, |flier| flier.height_m() < 9.0);
+    for _ in 0..10 {
+        assert!((flier.climb_m_s() + 0.5).abs() < 0.1, "{}", flier.climb_m_s());
+        flier.fly(1.0);
+    }
+    flier.wait_disarmed(60.0);
+}

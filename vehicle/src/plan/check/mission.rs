@@ -66,12 +66,13 @@ fn particular(item: &MissionItem, site: &Site) -> Result<(), ItemFault> {
 }
 
 fn check_place(rule: PlaceRule, item: &MissionItem, site: &Site) -> Result<(), ItemFault> {
-    if rule == PlaceRule::None && item.command != command::DO_SET_ROI {
+    let is_region = matches!(item.command, command::DO_SET_ROI | command::NAV_ROI);
+    if rule == PlaceRule::None && !is_region {
         return Ok(());
     }
     // Only the kind that is a place has one; where the present place counts, none is needed.
     let named = match item.command {
-        command::DO_SET_ROI => item.parameter_or(1, 0.0) == ROI_LOCATION,
+        command::DO_SET_ROI | command::NAV_ROI => item.parameter_or(1, 0.0) == ROI_LOCATION,
         command::DO_SET_HOME => item.parameter_or(1, 0.0) == 0.0,
         _ => true,
     };
@@ -90,7 +91,9 @@ pub fn whole(items: &[MissionItem]) -> Result<(), PlanFault> {
         }
         let target = match item.command {
             command::DO_JUMP => Some((1, item.parameter(1))),
-            command::DO_SET_ROI if item.parameter(1) == ROI_ITEM => Some((2, item.parameter(2))),
+            command::DO_SET_ROI | command::NAV_ROI if item.parameter(1) == ROI_ITEM => {
+                Some((2, item.parameter(2)))
+            }
             _ => None,
         };
         let Some((number, target)) = target else { continue };

@@ -82,6 +82,7 @@ fn conditions_and_jumps() -> Vec<Case> {
     vec![
         (CONDITION_DELAY, [4.0, NAN, NAN, NAN], [NAN; 3], Step::Condition(Condition::Delay(4.0))),
         (CONDITION_DISTANCE, [15.0, NAN, NAN, NAN], [NAN; 3], Step::Condition(Condition::Distance(15.0))),
+        (CONDITION_GATE, [0.0; 4], AT, Step::Condition(Condition::Gate(place(AT).horizontal_m.unwrap()))),
         (CONDITION_YAW, [180.0, 90.0, -1.0, 0.0], [0.0; 3], turn(counter_clockwise, Some(FRAC_PI_2))),
         (CONDITION_YAW, [90.0, NAN, NAN, NAN], [0.0; 3], turn(shortest, None)),
         (CONDITION_YAW, [90.0, 0.0, -1.0, 1.0], [0.0; 3], turn(TurnTo::By(-FRAC_PI_2), None)),
@@ -112,6 +113,8 @@ fn actions() -> Vec<Case> {
         (DO_SET_ROI, [1.0, 0.0, 0.0, 0.0], AT, ahead(0.0)),
         (DO_SET_ROI, [2.0, 0.0, 0.0, 0.0], AT, at(BEFORE)),
         (DO_SET_ROI, [3.0, 0.0, 0.0, 0.0], AT, at(AT)),
+        (NAV_ROI, [3.0, 0.0, 0.0, 0.0], AT, at(AT)),
+        (NAV_ROI, [1.0, 0.0, 0.0, 0.0], AT, ahead(0.0)),
     ];
     actions.map(|(command, parameters, position, action)| (command, parameters, position, Step::Do(action))).into()
 }

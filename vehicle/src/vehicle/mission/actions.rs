@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
 use super::super::notice::Severity;
 use super::super::proposal::Proposal;
@@ -33,6 +33,8 @@ enum Waiting {
     Until(u64),
     /// Nearer than this to the end of the leg, m.
     Within(f64),
+    /// Beyond the plane through a place, north and east, m.
+    Beyond([f64; 2]),
     /// The end of the turn.
     Turned,
 }
@@ -92,6 +94,10 @@ impl Actions {
             Waiting::Within(distance_m) => {
                 way_m.is_some_and(|[_, end_m]| (outputs.position_m - end_m).norm() <= distance_m)
             }
+            Waiting::Beyond([x, y]) => way_m.is_some_and(|[_, end_m]| {
+                let gate_m = Vector2::new(x, y);
+                (outputs.position_m.xy() - gate_m).dot(&(end_m.xy() - gate_m)) >= 0.0
+            }),
             Waiting::Turned => self.turning.is_none_or(|turn| turn.is_done(outputs.attitude_rad.z)),
         }
     }
@@ -100,6 +106,7 @@ impl Actions {
         match condition {
             Condition::Delay(time_s) => Waiting::Until(situation.after_us(*time_s)),
             Condition::Distance(distance_m) => Waiting::Within(*distance_m),
+            Condition::Gate(place_m) => Waiting::Beyond(*place_m),
             Condition::Yaw(turn) => {
                 self.turn_to(turn, situation);
                 Waiting::Turned

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::super::descent::descend;
 use super::super::fence_watch::stopping_place_m;
-use super::super::motion::at_rest;
+use super::super::motion::{at_rest, wrapped};
 use super::super::notice::Severity;
 use super::super::proposal::Proposal;
 use super::super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
@@ -16,13 +16,16 @@ use super::super::steering::{Steering, SteeringKind};
 use super::super::takeoff::is_slow_near;
 use super::super::tick::TICK_S;
 use super::announcement;
-use super::leg::{Guide, Leg, LegProgress, Turn, is_settling};
+use super::leg::{Guide, Leg, LegProgress, Turn, bearing_rad, is_settling};
 use super::route::Route;
 use super::takeoff_height::{climb_z_m, takeoff_z_m};
 use super::task::{Lowering, Task, TaskProgress, Then, delay_end_us};
 use crate::equipment::Operation;
 use crate::plan::Place;
 use crate::plan::step::Navigate;
+
+/// So near to its heading, rad, the nose is there: MIS_YAW_ERR, 12°.
+const FACING_RAD: f64 = 0.21;
 
 /// What is being done for the present step.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -164,16 +167,46 @@ impl Course {
             _ if self.turn.is_none() && is_settling(&situation.outputs.setpoint) => {
                 return TaskProgress::Going;
             }
-            _ => match route.leg_end_m(step, &self.anchor_m) {
-                Some(end_m) => self.begin_leg(step, end_m, route, situation),
-                None => {
-                    proposal.hold(situation);
-                    Task::Descend(None)
-                }
-            },
+            _ if route.faces_first() && self.turn.is_none() => {
+                self.begin_facing(step, route, proposal, situation)
+            }
+            _ => self.begin_way(step, route, situation, proposal),
         };
         self.task = Some(task);
         TaskProgress::Going
+    }
+
+    /// The nose to where the leg leads, which begins then.
+    fn begin_facing(
+        &mut self,
+        step: &Navigate,
+        route: &Route,
+        proposal: &mut Proposal,
+        situation: &Situation,
+    ) -> Task {
+        let Some(end_m) = route.leg_end_m(step, &self.anchor_m) else {
+            return self.begin_way(step, route, situation, proposal);
+        };
+        let (_, asked_rad) = self.then(step, &end_m, route);
+        self.head_for(asked_rad, bearing_rad(&self.anchor_m, &end_m));
+        Task::Face
+    }
+
+    /// To the step's place, or down where it has none.
+    fn begin_way(
+        &mut self,
+        step: &Navigate,
+        route: &Route,
+        situation: &Situation,
+        proposal: &mut Proposal,
+    ) -> Task {
+        match route.leg_end_m(step, &self.anchor_m) {
+            Some(end_m) => self.begin_leg(step, end_m, route, situation),
+            None => {
+                proposal.hold(situation);
+                Task::Descend(None)
+            }
+        }
     }
 
     /// The heading on a way: what is asked for, else its direction, if it has one.
@@ -317,6 +350,12 @@ impl Course {
                 self.task = None;
                 TaskProgress::Again
             }
+            Task::Face => {
+                if faces(situation, proposal) {
+                    self.task = Some(self.begin_way(step, route, situation, proposal));
+                }
+                TaskProgress::Going
+            }
             Task::Leg(leg, then) => self.fly_leg(leg, then, situation, proposal),
             Task::Wait(Some(until_us)) if situation.time_us >= until_us => TaskProgress::Done(None),
             Task::Circle(mut circle) => {
@@ -389,4 +428,14 @@ impl Course {
         self.task = Some(task);
         progress
     }
+}
+
+/// Whether the nose is where it is turned to, by whomever: PX4 waits for no more, either.
+fn faces(situation: &Situation, proposal: &Proposal) -> bool {
+    let wanted_rad = match proposal.steering() {
+        Steering::Goal(goal) => goal.yaw_rad,
+        Steering::Path(path) => path.goal().yaw_rad,
+        _ => return true,
+    };
+    wrapped(wanted_rad - situation.outputs.attitude_rad.z).abs() < FACING_RAD
 }

@@ -324,8 +324,13 @@ impl Leg {
 
     /// Direction of the leg, rad from north, if it has a horizontal one.
     pub fn bearing_rad(&self) -> Option<f64> {
-        const SHORTEST_M: f64 = 1.0;
-        let way = self.to_m - self.from_m;
-        (way.xy().norm() > SHORTEST_M).then(|| libm::atan2(way.y, way.x))
+        bearing_rad(&self.from_m, &self.to_m)
     }
+}
+
+/// Direction of a way between two places, rad from north, if it has a horizontal one.
+pub fn bearing_rad(from_m: &Vector3<f64>, to_m: &Vector3<f64>) -> Option<f64> {
+    const SHORTEST_M: f64 = 1.0;
+    let way = to_m - from_m;
+    (way.xy().norm() > SHORTEST_M).then(|| libm::atan2(way.y, way.x))
 }

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use quadrotor::Limits;
 
 use super::super::ground_way::{GroundWay, PLACES_AHEAD, leads_along_ground};
+use super::super::heading_policy::HeadingPolicy;
 use super::super::proposal::Proposal;
 use super::super::situation::Situation;
 use super::super::spline::CurvePlaces;
@@ -35,6 +36,8 @@ pub struct Route<'a> {
     limits: &'a Limits,
     fence: Option<Fence<'a>>,
     terrain: &'a Terrain,
+    /// Whether the nose points to a place before it is flown to.
+    faces_first: bool,
 }
 
 impl<'a> Route<'a> {
@@ -55,6 +58,7 @@ impl<'a> Route<'a> {
             limits: situation.limits(),
             fence: situation.fence(),
             terrain: situation.terrain,
+            faces_first: HeadingPolicy::of(situation) == HeadingPolicy::NextPlaceFirst,
         }
     }
 
@@ -200,7 +204,7 @@ impl<'a> Route<'a> {
             let curves = follows
                 .and_then(|index| self.program.navigate(index))
                 .is_some_and(|step| matches!(step, Navigate::Spline { .. }) || self.follows_ground(&step));
-            let rests = curves || self.rests_at(index, &step);
+            let rests = curves || self.faces_first || self.rests_at(index, &step);
             stops.push(Stop { position_m, radius_m: self.acceptance_radius_m(&step), rests });
             if rests {
                 break;
@@ -209,6 +213,11 @@ impl<'a> Route<'a> {
             from_m = position_m;
         }
         stops
+    }
+
+    /// Whether the nose points to a place before it is flown to.
+    pub fn faces_first(&self) -> bool {
+        self.faces_first
     }
 
     /// Whether the vehicle comes to rest at a step.

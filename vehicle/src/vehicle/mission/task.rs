@@ -18,6 +18,8 @@ pub enum Task {
         /// Whether that is a takeoff, or the way up to another step.
         takeoff: bool,
     },
+    /// The nose to the next place, before it flies there.
+    Face,
     /// To a place.
     Leg(Leg, Then),
     /// Until a time, µs, or for ever.

@@ -5,6 +5,7 @@ use quadrotor::Configuration;
 use super::super::change_error::ChangeError;
 use super::super::failsafe::Cause;
 use super::super::machines::Machines;
+use super::super::mission_return::MissionReturn;
 use super::super::notice::Severity;
 use super::super::proposal::{Outcome, Proposal, Request};
 use super::super::situation::Situation;
@@ -57,7 +58,12 @@ impl Vehicle {
         if let Some(steering) = outcome.steering {
             self.decided.steer(steering);
         }
+        let has_moved = outcome.home.position_m != self.decided.home().position_m;
         self.decided.move_home(outcome.home);
+        if has_moved && self.plans.fence_moves_with_home() {
+            let site = self.site();
+            self.plans.follow_home(&site);
+        }
         if outcome.region.is_some() && outcome.region != self.decided.region() {
             self.machines.equipment.track();
         }
@@ -136,7 +142,10 @@ impl Vehicle {
             Mode::Offboard if !situation.set_points_are_recent => proposal.hold(situation),
             Mode::Mission => parts.mission.enter(situation, proposal),
             Mode::Return if proposal.steering().kind() != SteeringKind::Idle => {
-                parts.return_home.begin(situation, proposal);
+                match MissionReturn::new(&parts.mission, before == Mode::Mission, situation) {
+                    Some(way) => parts.return_home.begin_along(way, situation, proposal),
+                    None => parts.return_home.begin(situation, proposal),
+                }
             }
             Mode::SmartReturn if proposal.steering().kind() != SteeringKind::Idle => {
                 parts.smart_return.begin(situation, proposal);

@@ -1,7 +1,7 @@
 //! What may be asked about plans: to replace one, and to fly the mission.
 
 use super::super::notice::{Refusal, Severity};
-use super::super::plans::{check_rally_points, check_reach, check_way};
+use super::super::plans::{check_rally_points, check_reach, check_way, keeps_inside};
 use super::Vehicle;
 use crate::mode::Mode;
 use crate::plan::item_search::{LARGEST_TAG, landing_start, tagged_item};
@@ -50,9 +50,8 @@ impl Vehicle {
                 self.plans.take_rally_points(items, points);
             }
         }
-        if let Err(fault) = check_way(&self.situation(), self.machines.mission.program(), false) {
-            self.decided
-                .say(Severity::Warning, format!("Mission cannot be flown: {}", fault.located(site.identity)));
+        if let Err(fault) = keeps_inside(&self.situation(), self.machines.mission.program(), false) {
+            self.warn_of_mission(&fault);
         }
         Ok(())
     }
@@ -63,14 +62,20 @@ impl Vehicle {
         let begins = !amended && self.mode() != Mode::Mission;
         check_way(&self.situation(), &program, begins)?;
         self.plans.take_mission(items);
-        if let Err(fault) = check_reach(&self.situation(), &program) {
-            self.decided
-                .say(Severity::Warning, format!("Mission cannot be flown: {}", fault.located(site.identity)));
+        let situation = self.situation();
+        let reached = check_reach(&situation, &program);
+        if let Err(fault) = reached.and_then(|()| keeps_inside(&situation, &program, begins)) {
+            self.warn_of_mission(&fault);
         }
         self.consult(|parts, situation, proposal| {
             parts.mission.replace(situation, proposal, program, amended);
         });
         Ok(())
+    }
+
+    fn warn_of_mission(&mut self, fault: &PlanFault) {
+        let reason = fault.located(self.identity());
+        self.decided.say(Severity::Warning, format!("Mission cannot be flown: {reason}"));
     }
 
     /// Starts the mission, or goes on with it; `first` names the item to begin with.
