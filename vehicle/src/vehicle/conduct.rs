@@ -199,10 +199,15 @@ fn thrust_as_thrust() -> u8 {
 /// | acceptance radius | 2 m | theirs, for copters |
 /// | land speed | 0.7 m/s below 2 m; ArduPilot 0.5 m/s below 10 m | theirs, but that PX4 is slow below 5 m |
 /// | disarm | 2 s after landing, 10 s before takeoff | PX4's |
-/// | sticks | 5 m/s (ArduPilot 12.5), up 2, down 1.5 m/s (ArduPilot 2.5 both), 0.5 s (ArduPilot 1 s) | theirs, within our limits of speed |
+/// | sticks | 5 m/s (ArduPilot 12.5), up 2, down 1.5 m/s (ArduPilot 2.5 both), 0.5 s (ArduPilot 1 s) | theirs, but that PX4's pilot is as fast as our limits leave room to brake |
 /// | battery | 2.2 A·h of three cells | half an hour for 0.7 kg |
 /// | failure injection | not allowed; ArduPilot: allowed | PX4's; ArduPilot has no such parameter |
 impl Conduct {
+    /// Sink rate of a full stick, m/s: ArduPilot's pilots come down as fast as they climb unless told otherwise.
+    pub fn fastest_stick_sink_m_s(&self) -> f64 {
+        if self.stick_sink_m_s > 0.0 { self.stick_sink_m_s } else { self.stick_climb_m_s }
+    }
+
     /// Whether the thrust of attitudes is one in ArduPilot's guided mode, and no climb rate.
     pub fn thrust_is_asked_for(&self) -> bool {
         self.guided_options & THRUST_AS_THRUST != 0

@@ -80,6 +80,7 @@ impl Speeds {
             let most_m_s = self.most_m_s[axis].map(|most_m_s| most_m_s.max(LEAST_SPEED_M_S));
             // Who leads may ask for all that there is.
             let limit_m_s = most_m_s.filter(|_| self.chosen.is_led).unwrap_or(limit_m_s);
+            let limit_m_s = self.chosen.sticks_m_s.map_or(limit_m_s, |sticks| limit_m_s.max(sticks[axis]));
             let by_takeoff = self.chosen.takeoff_m_s.filter(|_| axis == UP);
             let limit_m_s =
                 by_takeoff.map_or(limit_m_s, |takeoff_m_s| limit_m_s.min(takeoff_m_s.max(LEAST_SPEED_M_S)));
@@ -185,7 +186,18 @@ mod tests {
         let led = SpeedChoice { is_led: true, ..SpeedChoice::default() };
         assert_eq!(bounded.after(SpeedChange::Choose(led)).in_force(), [5.0, 9.0, 0.1]);
         assert_eq!(speeds.after(SpeedChange::Choose(led)).in_force(), [8.0, 4.0, 3.0], "nothing is set");
-        let takes_off = SpeedChoice { takeoff_m_s: Some(1.5), is_led: false };
+        let takes_off = SpeedChoice { takeoff_m_s: Some(1.5), ..SpeedChoice::default() };
         assert_eq!(bounded.after(SpeedChange::Choose(takes_off)).in_force(), [5.0, 1.5, 0.1]);
+    }
+
+    /// ArduPilot: the speeds of missions do not bound those of the pilot, who leaves room for the others.
+    #[test]
+    fn a_pilot_may_be_faster_than_a_mission() {
+        let limits =
+            Limits { speed_horizontal_m_s: 8.0, speed_up_m_s: 4.0, speed_down_m_s: 3.0, ..Limits::default() };
+        let piloted = SpeedChoice { sticks_m_s: Some([12.5, 2.5, 5.0]), ..SpeedChoice::default() };
+        let speeds = Speeds::new(&limits).after(SpeedChange::Choose(piloted));
+        assert_eq!(speeds.in_force(), [12.5, 4.0, 5.0]);
+        assert_eq!(speeds.after(SpeedChange::Choose(SpeedChoice::default())).in_force(), [8.0, 4.0, 3.0]);
     }
 }

@@ -28,9 +28,7 @@ impl Sticks {
     /// The climb rate that is asked for, m/s.
     pub fn climb_m_s(&self, conduct: &Conduct) -> f64 {
         let up = beyond(self.up, 2.0 * conduct.sticks.throttle_dead_zone);
-        // ArduPilot's pilots come down as fast as they climb unless told otherwise.
-        let sinks = up < 0.0 && conduct.stick_sink_m_s > 0.0;
-        up * if sinks { conduct.stick_sink_m_s } else { conduct.stick_climb_m_s }
+        up * if up < 0.0 { conduct.fastest_stick_sink_m_s() } else { conduct.stick_climb_m_s }
     }
 
     /// Without their dead zones.

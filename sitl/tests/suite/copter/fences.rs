@@ -312,7 +312,7 @@ fn a_circle_around_home_moves_with_it_and_the_innermost_counts() {
     let mut flier = Flier::new();
     flier.set_all(&POLYGONS);
     // Its pilot flies in Stabilize, where nothing keeps the sticks inside.
-    flier.set_all(&[("AVOID_ENABLE", 0.0), ("GF_PREDICT", 0.0)]);
+    flier.set("AVOID_ENABLE", 0.0);
     home_circles(&mut flier, &[50.0, 100.0]);
     flier.take_off(5.0, LOITER);
     flier.rc(2, 1200);

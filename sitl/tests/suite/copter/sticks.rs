@@ -29,6 +29,27 @@ fn loiter_turns_flies_and_holds() {
     flier.return_home();
 }
 
+/// The speeds of ArduCopter's pilot are not those of its missions; a return that begins at 12.5 m/s goes on with WP_SPD.
+#[test]
+fn loiter_has_speeds_of_its_own() {
+    let mut flier = Flier::new();
+    flier.set_all(&[("WP_SPD", 5.0), ("WP_SPD_UP", 1.5), ("WP_SPD_DN", 1.0), ("PILOT_SPD_UP", 4.0)]);
+    flier.take_off(10.0, LOITER);
+    flier.rc(3, 2000);
+    flier.wait("4 m/s upwards", 10.0, |flier| (flier.climb_m_s() - 4.0).abs() < 0.2);
+    flier.fly(5.0);
+    flier.rc(3, 1000);
+    flier.wait("4 m/s downwards", 10.0, |flier| (flier.climb_m_s() + 4.0).abs() < 0.2);
+    flier.rc_all(&[(3, 1500), (2, 1000)]);
+    flier.wait("12.5 m/s", 60.0, |flier| (flier.speed_m_s() - 12.5).abs() < 0.2);
+    flier.fly(5.0);
+    assert!((flier.speed_m_s() - 12.5).abs() < 0.2, "{} m/s", flier.speed_m_s());
+    flier.rc(2, 1500);
+    flier.change_mode(RTL);
+    flier.fly(20.0);
+    assert!((flier.speed_m_s() - 5.0).abs() < 0.2, "{} m/s", flier.speed_m_s());
+}
+
 /// Suite: takeoffAndMoveAway, with which its failsafe tests begin.
 #[test]
 fn altitude_hold_turns_and_flies_away() {

@@ -264,7 +264,7 @@ impl Default for BatteryActions {
 }
 
 /// PX4's values, but for three: a critical battery returns, an empty one lands, and a failed rotor lands (PX4 warns of all), and the fence
-/// is seen ahead (PX4 acts beyond it). A vehicle that is there to be tested shows what it can do.
+/// is seen ahead (PX4 acts beyond it, and so does ArduPilot's identity). A vehicle that is there to be tested shows what it can do.
 impl Default for FailsafeSettings {
     fn default() -> Self {
         Self {
@@ -300,7 +300,7 @@ impl Default for FailsafeSettings {
 }
 
 impl FailsafeSettings {
-    /// The defaults, which differ by convention: ArduPilot's fence is off; it returns at it and lets nobody choose another mode until it is
+    /// The defaults, which differ by convention: ArduPilot's fence is off; it returns beyond it and lets nobody choose another mode until it is
     /// back, stays where all inclusion zones are, misses its ground station after 5 s, and only warns of a weak battery.
     pub fn new(ardupilot: bool) -> Self {
         let px4 = Self::default();
@@ -310,6 +310,7 @@ impl FailsafeSettings {
         Self {
             fence: Action::Return,
             fence_enabled: false,
+            fence_ahead: false,
             fence_radius_m: 300.0,
             fence_height_m: 100.0,
             fence_margin_m: 2.0,
