@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::camera::Camera;
 use super::controller::GimbalControl;
 use super::gimbal::Gimbal;
-use super::gripper::Gripper;
+use super::gripper::{Grip, Gripper};
 use super::mount::MountSettings;
 use super::operation::{Operation, Pointing};
 use super::parachute::Parachute;
@@ -94,12 +94,12 @@ impl Equipment {
     }
 
     /// Whether nothing happens by itself while the vehicle looks at something, or at nothing.
-    pub fn rests(&self, looks: bool) -> bool {
+    pub fn rests(&self, looks: bool, gripper_closes_after_s: f64) -> bool {
         self.camera.rests()
             && self.gimbal.rests(looks)
             && self.servos.rest()
             && self.relays.rest()
-            && !self.gripper.moves()
+            && !self.gripper.acts(gripper_closes_after_s)
     }
 
     /// Does what is asked.
@@ -205,11 +205,16 @@ impl Equipment {
     ///
     /// # Errors
     /// [`Refusal`] of an image that was due.
-    pub fn step(&mut self, around: &Surroundings, dt_s: f64) -> Result<Option<bool>, Refusal> {
+    pub fn step(
+        &mut self,
+        around: &Surroundings,
+        gripper_closes_after_s: f64,
+        dt_s: f64,
+    ) -> Result<Option<Grip>, Refusal> {
         self.servos.step(around.time_us);
         self.relays.step(around.time_us);
         self.gimbal.step(around, dt_s);
-        let gripped = self.gripper.step(around.time_us);
+        let gripped = self.gripper.step(around.time_us, gripper_closes_after_s);
         for _ in 0..self.camera.step(around, dt_s) {
             if let Err(refusal) = self.shoot(around) {
                 self.camera.stop_capture();

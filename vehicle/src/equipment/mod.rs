@@ -31,7 +31,7 @@ pub use camera::{Camera, CameraMode, STORAGE_MIB};
 pub use controller::{Controller, GimbalControl};
 pub use equipment::Equipment;
 pub use gimbal::{Gimbal, GimbalLimits};
-pub use gripper::Gripper;
+pub use gripper::{Grip, Gripper};
 pub use image::Image;
 pub use lens::{Drive, FOCAL_LENGTH_MM, SENSOR_MM};
 pub use mount::{GimbalMode, MountSettings};

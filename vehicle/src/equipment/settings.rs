@@ -20,6 +20,10 @@ pub struct EquipmentSettings {
     pub grabbing_us: u16,
     #[allow(missing_docs)] // With the one above.
     pub releasing_us: u16,
+    /// Pulse before it has been told either, µs (GRIP_NEUTRAL).
+    pub gripper_waits_us: u16,
+    /// Time after a release after which it grabs by itself, s; 0: never (GRIP_AUTOCLOSE).
+    pub gripper_closes_after_s: f64,
     /// Whether it has a landing gear (LGR_ENABLE).
     pub landing_gear: bool,
     /// The gimbal.
@@ -36,6 +40,8 @@ impl Default for EquipmentSettings {
             centred_when_lost: 0,
             grabbing_us: 1900,
             releasing_us: 1100,
+            gripper_waits_us: 1500,
+            gripper_closes_after_s: 0.0,
             landing_gear: false,
             mount: MountSettings::default(),
             parachute: ParachuteSettings::default(),

@@ -230,8 +230,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("ICE_ENABLE", 0, 0..=1, "", "Combustion engine; there is none"),
         ("GRIP_ENABLE", 0, 0..=1, "", "Enable the gripper; it is there in any case"),
         ("GRIP_TYPE", 0, 0..=2, "", "Kind of gripper; it is simulated"),
-        ("GRIP_NEUTRAL", 1500, 1000..=2000, "us", "Pulse that waits"),
-        ("GRIP_AUTOCLOSE", 0, 0..=60, "s", "Time after which the gripper closes"),
         ("GRIP_REGRAB", 0, 0..=255, "s", "Period of grabbing again"),
         ("CHUTE_TYPE", 0, 0..=10, "", "How the parachute is opened; here by an output (SERVOn_FUNCTION = 27)"),
         ("CHUTE_OPTIONS", 0, 0..=3, "", "Options of the parachute"),

@@ -42,7 +42,7 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("MPC_ACC_HOR_MAX", 5.0, 2.0..=15.0, "m/s^2", "Largest horizontal acceleration under sticks"),
         ("MPC_ACC_DOWN_MAX", 3.0, 2.0..=15.0, "m/s^2", "Largest downward acceleration"),
         ("MPC_JERK_MAX", 8.0, 0.5..=500.0, "m/s^3", "Largest jerk under sticks"),
-        ("MPC_TILTMAX_LND", 12.0, 10.0..=89.0, "deg", "Largest tilt while landing"),
+        ("MPC_TILTMAX_LND", 12.0, 10.0..=89.0, "deg", "Largest tilt while a takeoff begins"),
         ("MPC_THR_MIN", 0.12, 0.05..=0.5, "norm", "Smallest thrust in controlled modes"),
         ("MPC_THR_MAX", 1.0, 0.0..=1.0, "norm", "Largest thrust"),
         ("MPC_YAWRAUTO_ACC", 60.0, 5.0..=360.0, "deg/s^2", "Largest yaw acceleration in automatic modes"),
@@ -55,7 +55,7 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("MPC_POS_MODE", 4, 0..=4, "", "Position mode's response to sticks"),
     ]),
     kept!(Px4, "takeoffs and landings are shaped by MPC_TKO_SPEED, MPC_LAND_SPEED and the limits of acceleration and jerk", real [
-        ("MPC_TKO_RAMP_T", 3.0, 0.0..=5.0, "s", "Time over which a takeoff's thrust rises"),
+        ("MPC_TKO_RAMP_T", 3.0, 0.0..=5.0, "s", "Time over which a takeoff's climb rate rises"),
         ("COM_SPOOLUP_TIME", 1.0, 0.0..=30.0, "s", "Delay between arming and takeoff"),
         ("LNDMC_Z_VEL_MAX", 0.25, 0.0..=10.0, "m/s", "Vertical speed below which it may have landed"),
         ("LNDMC_XY_VEL_MAX", 1.5, 0.0..=10.0, "m/s", "Horizontal speed below which it may have landed"),

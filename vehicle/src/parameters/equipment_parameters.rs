@@ -83,6 +83,8 @@ static OTHERS: Group = &[
     bitmask!("SERVO_RC_FS_MSK", CHANNELS, equipment.centred_when_lost, same, same, "Channels whose scaled outputs go to their centre when the radio is lost; others stay where they are"),
     whole!("GRIP_GRAB", 1000..=2000, equipment.grabbing_us, u16, "Pulse that grabs (us)"),
     whole!("GRIP_RELEASE", 1000..=2000, equipment.releasing_us, u16, "Pulse that releases (us)"),
+    whole!("GRIP_NEUTRAL", 1000..=2000, equipment.gripper_waits_us, u16, "Pulse until the gripper is first told to grab or to release (us)"),
+    real!("GRIP_AUTOCLOSE", None, 0.0..=255.0, equipment.gripper_closes_after_s, "s", "Time after a release after which the gripper grabs by itself; 0: never"),
     switch!("LGR_ENABLE", equipment.landing_gear, "Whether there is a landing gear"),
     whole!("MNT1_TYPE", 0..=13, equipment.mount.kind, u8, "Kind of gimbal: 0 is pointed by MAVLink only and has its own ranges; 1 has servos, which reach their angles at once; any other kind turns at 180 deg/s"),
     choice!("MNT1_DEFLT_MODE", MODES, equipment.mount.first_mode, "Mode of the gimbal at startup, and when there is no longer anything to look at; without effect if MNT1_TYPE is 0"),

@@ -5,7 +5,7 @@ use super::super::region::RegionOfInterest;
 use super::super::tick::TICK_S;
 use super::Vehicle;
 use crate::equipment::{
-    Equipment, FIRST_FREE_CHANNEL, GimbalControl, Operation, OutputFunction, Surroundings,
+    Equipment, FIRST_FREE_CHANNEL, GimbalControl, Grip, Operation, OutputFunction, Surroundings,
 };
 use crate::plan::Look;
 use crate::radio::{Channel, GIMBAL_AXES};
@@ -40,8 +40,8 @@ impl Vehicle {
         self.machines.equipment.operate(operation, &around)?;
         match operation {
             Operation::Grip { grabs } => {
-                let what = if *grabs { "grabbing" } else { "releasing" };
-                self.decided.say(Severity::Info, format!("Gripper load {what}"));
+                let grip = if *grabs { Grip::Grabbing } else { Grip::Releasing };
+                self.tell_grip(grip);
             }
             Operation::MoveLandingGear { down } => {
                 let what = if *down { "DEPLOY" } else { "RETRACT" };
@@ -65,18 +65,20 @@ impl Vehicle {
 
     /// One tick of it, unless nothing happens.
     pub(super) fn step_equipment(&mut self) {
-        if self.machines.equipment.rests(self.decided.region().is_some()) {
+        let closes_after_s = self.conduct().equipment.gripper_closes_after_s;
+        if self.machines.equipment.rests(self.decided.region().is_some(), closes_after_s) {
             return;
         }
         let around = self.surroundings();
-        match self.machines.equipment.step(&around, TICK_S) {
+        match self.machines.equipment.step(&around, closes_after_s, TICK_S) {
             Ok(None) => {}
-            Ok(Some(grabbed)) => {
-                let what = if grabbed { "grabbed" } else { "released" };
-                self.decided.say(Severity::Info, format!("Gripper load {what}"));
-            }
+            Ok(Some(grip)) => self.tell_grip(grip),
             Err(refusal) => self.decided.say(Severity::Warning, refusal.to_string()),
         }
+    }
+
+    fn tell_grip(&mut self, grip: Grip) {
+        self.decided.say(Severity::Info, format!("Gripper load {}", grip.word()));
     }
 
     fn surroundings(&self) -> Surroundings {

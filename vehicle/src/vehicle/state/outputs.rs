@@ -13,6 +13,7 @@ impl Vehicle {
         match output.follows(number) {
             OutputFunction::Command => self.equipment().servos().pulse_us(number),
             OutputFunction::Radio { channel, scaled } => self.radio_output_us(output, channel, scaled),
+            OutputFunction::Gripper if self.equipment().gripper().waits() => settings.gripper_waits_us,
             OutputFunction::Gripper if self.equipment().gripper().grabs() => settings.grabbing_us,
             OutputFunction::Gripper => settings.releasing_us,
             OutputFunction::Parachute => {
