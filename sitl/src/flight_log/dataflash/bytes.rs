@@ -61,8 +61,8 @@ pub const DESCRIBED: [Described; 15] = [
         "CAM",
         CAM_KINDS,
         "TimeUS,I,Img,GPSTime,GPSWeek,Lat,Lng,Alt,RelAlt,GPSAlt,R,P,Y",
-        "s#-s-DUmmmddd",
-        "F--C-GGBBB---",
+        "s#---DUmmmddd",
+        "F----GGBBB000",
     ),
     (DSF, "DSF", "QIHIIII", "TimeUS,Dp,Blk,Bytes,FMn,FMx,FAv", "s--b---", "F--0---"),
 ];
