@@ -12,6 +12,9 @@ use crate::envelope::Origin;
 const NAV_GUIDED_ENABLE: u16 = MavCmd::MAV_CMD_NAV_GUIDED_ENABLE as u16;
 const DO_SET_MODE: u16 = MavCmd::MAV_CMD_DO_SET_MODE as u16;
 
+/// MAV_MODE_FLAG_DECODE_POSITION_SAFETY, alone.
+const SAFETY: u8 = 128;
+
 /// Changes modes.
 #[derive(Clone, Copy, Debug)]
 pub struct CustomModes;
@@ -31,10 +34,16 @@ impl Service for CustomModes {
         COMMANDS
     }
 
-    /// SET_MODE: answered as the command that replaced it, as PX4 and ArduPilot do.
+    /// SET_MODE: answered as the command that replaced it, as PX4 and ArduPilot do. With the base mode for it, its number is the state
+    /// of ArduPilot's safety switch.
     fn receive(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
         const SET_MODE_MESSAGE: u16 = id::SET_MODE as u16;
-        let result = change_to(&mut context.vehicle, frame.payload().u32(0));
+        let (number, base_mode) = (frame.payload().u32(0), frame.payload().u8(5));
+        let result = if context.identity().is_ardupilot() && base_mode == SAFETY {
+            switch_safety(&mut context.vehicle, number)
+        } else {
+            change_to(&mut context.vehicle, number)
+        };
         let outcome = result.map(|()| Progress::Done);
         acknowledge_outcome(&mut context.outbox, origin, SET_MODE_MESSAGE, Some(&outcome));
         explain(context, &outcome);
@@ -53,6 +62,17 @@ impl Service for CustomModes {
             _ => set_mode(vehicle, command)?,
         }
         Ok(Progress::Done)
+    }
+}
+
+fn switch_safety(vehicle: &mut Vehicle, state: u32) -> Result<(), Refusal> {
+    match state {
+        0 | 1 => vehicle.switch_safety(state == 1),
+        _ => {
+            let text =
+                format!("Safety switch rejected: state {state}; allowed 0 (rotors may turn), 1 (safe)");
+            Err(Refusal::Failed(text))
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! MAV_CMD_DO_SET_SAFETY_SWITCH_STATE, which ArduPilot has: this vehicle has no switch, and its rotors are always free to turn.
+//! MAV_CMD_DO_SET_SAFETY_SWITCH_STATE, which ArduPilot has.
 
 use mavlink::dialects::ardupilotmega::MavCmd;
 use vehicle::Refusal;
@@ -14,13 +14,13 @@ const COMMANDS: &[CommandEntry] = &[CommandEntry::action(MavCmd::MAV_CMD_DO_SET_
 const SAFE: f64 = 0.0;
 const DANGEROUS: f64 = 1.0;
 
-/// Answers as a board without the switch.
+/// Switches the safety switch.
 #[derive(Clone, Copy, Debug)]
 pub struct SafetySwitch;
 
 impl Service for SafetySwitch {
     fn summary(&self) -> &'static str {
-        "Safety switch; there is none, so it is always off"
+        "Safety switch"
     }
 
     fn commands(&self) -> &'static [CommandEntry] {
@@ -31,12 +31,12 @@ impl Service for SafetySwitch {
         if !context.identity().is_ardupilot() {
             return Err(Refusal::Unsupported("Only ArduPilot has a command for a safety switch".to_owned()));
         }
-        match command.parameter(1) {
-            DANGEROUS => Ok(Progress::Done),
-            SAFE => {
-                Err(Refusal::Failed("There is no safety switch: disarm to keep the rotors still".to_owned()))
-            }
-            state => Err(Refusal::denied(format!("Safety switch: state {state} is neither 0 (safe) nor 1"))),
+        let state = command.parameter(1);
+        if state != SAFE && state != DANGEROUS {
+            let text = format!("Safety switch denied: state {state}; allowed 0 (safe), 1 (rotors may turn)");
+            return Err(Refusal::denied(text));
         }
+        context.vehicle.switch_safety(state == SAFE)?;
+        Ok(Progress::Done)
     }
 }

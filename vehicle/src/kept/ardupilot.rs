@@ -183,7 +183,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("ARMING_REQUIRE", 1, 0..=2, "", "Arming is required"),
         ("ARMING_OPTIONS", 0, 0..=7, "", "Options of arming"),
         ("BRD_SAFETYENABLE", 0, 0..=1, "", "Safety switch"),
-        ("BRD_SAFETY_DEFLT", 0, 0..=1, "", "State of the safety switch"),
         ("BRD_BOOT_DELAY", 0, 0..=10000, "ms", "Delay of the start"),
         ("BATT_MONITOR", 4, 0..=31, "", "Kind of battery monitor; it is simulated"),
         ("BATT_OPTIONS", 0, 0..=1023, "", "Options of the battery monitor"),

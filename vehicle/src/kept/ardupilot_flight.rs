@@ -92,7 +92,6 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("AVOID_BEHAVE", 0, 0..=1, "", "Slide along obstacles or stop; here sticks slide and Guided stops"),
         ("RALLY_INCL_HOME", 1, 0..=1, "", "Home counts as a rally point"),
         ("FS_DR_ENABLE", 2, 0..=6, "", "Action when only dead reckoning is left; the estimate counts as lost then, see FS_EKF_ACTION"),
-        ("ARMING_NEED_LOC", 0, 0..=1, "", "A place is needed to arm; modes that fly by it need one in any case"),
         ("ARMING_CRSDP_IGN", 0, 0..=1, "", "Arm in spite of a crash dump"),
         ("OA_TYPE", 0, 0..=3, "", "Planning of paths around obstacles; returns and missions keep to the fence in any case"),
         ("WVANE_LAND", -1, -1..=4, "", "What is turned into the wind on landings; here as elsewhere"),

@@ -68,6 +68,8 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     real!("BATT_ARM_MAH", None, 0.0..=100_000.0, failsafe.battery_limits.to_arm_mah, "mAh", "Least remaining charge to arm with; 0: any"),
     whole!("ARMING_CHECK", 0..=1_048_575, arming.checks, i32, "Checks before arming, added up; 0 skips all of them, any other number makes all of them"),
     whole!("ARMING_SKIPCHK", -1..=1_048_575, arming.skipped, i32, "Checks before arming that are skipped, added up; -1 skips all of them, any other number none"),
+    switch!("ARMING_NEED_LOC", arming.needs_place, "Whether the place must be known to arm in any mode; modes that fly by it need it in any case"),
+    switch!("BRD_SAFETY_DEFLT", arming.is_safe_at_the_start, "Whether the safety switch is on after the next start"),
     bitmask!("ARMING_MIS_ITEMS", REQUIRED_ITEMS, arming.required_items, identity, identity, "Mission items without which the vehicle does not arm"),
     real!("LAND_SPEED_HIGH", None, 0.0..=2000.0, land_fast_m_s, 100.0, "cm/s", "Descent rate of the first part of a landing; 0: WP_SPD_DN"),
     real!("LAND_SPD_HIGH_MS", None, 0.0..=20.0, land_fast_m_s, "m/s", "Descent rate of the first part of a landing; 0: WP_SPD_DN").other(),

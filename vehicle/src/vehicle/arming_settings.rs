@@ -12,11 +12,15 @@ pub struct ArmingSettings {
     pub skipped: i32,
     /// Mission items that are required, as the parameter adds them up (ARMING_MIS_ITEMS).
     pub required_items: u32,
+    /// Whether its place must be known in every mode (ARMING_NEED_LOC).
+    pub needs_place: bool,
+    /// Whether the safety switch is on at the start (BRD_SAFETY_DEFLT).
+    pub is_safe_at_the_start: bool,
 }
 
 impl Default for ArmingSettings {
     fn default() -> Self {
-        Self { checks: 1, skipped: 0, required_items: 0 }
+        Self { checks: 1, skipped: 0, required_items: 0, needs_place: false, is_safe_at_the_start: false }
     }
 }
 

@@ -32,6 +32,7 @@ use super::receiver::Receiver;
 use super::remote_id::RemoteId;
 use super::return_home::Return;
 use super::rotor_watch::RotorWatch;
+use super::safety_switch::SafetySwitch;
 use super::settings::VehicleSettings;
 use super::simple_flight::SimpleFlight;
 use super::smart_return::SmartReturn;
@@ -57,6 +58,8 @@ pub struct Machines {
     pub autostart: Autostart,
     /// What only a reboot mends.
     pub boot_fault: BootFault,
+    /// The safety switch.
+    pub safety: SafetySwitch,
     /// What is broken.
     pub injection: Injection,
     /// The battery.
@@ -167,6 +170,7 @@ impl Machines {
         Self {
             autostart: Autostart::new(settings.autostart && program.is_flown()),
             boot_fault: settings.boot_fault(),
+            safety: SafetySwitch::new(settings.conduct.arming.is_safe_at_the_start),
             injection: Injection::new(settings.faults.clone()),
             battery: Battery::new(settings.battery),
             fence: FenceWatch::default(),

@@ -113,6 +113,7 @@ mod return_height;
 mod return_home;
 mod return_settings;
 mod rotor_watch;
+mod safety_switch;
 #[cfg(test)]
 mod scene;
 mod set_point;

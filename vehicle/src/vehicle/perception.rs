@@ -166,12 +166,13 @@ impl Perception {
         }
     }
 
-    /// What of the estimate speaks against arming.
-    pub fn obstacles(&self, needs: Needs) -> impl Iterator<Item = ArmingObstacle> {
+    /// What of the estimate speaks against arming. ArduPilot's clients look for its words of a place that is not known.
+    pub fn obstacles(&self, needs: Needs, ardupilot: bool) -> impl Iterator<Item = ArmingObstacle> {
         let (place, height) = (needs == Needs::Place, needs >= Needs::Height);
         let (health, validity) = (self.health(), self.validity());
         let aligned = self.navigation.as_ref().is_none_or(|navigation| navigation.estimator().is_aligned());
         let lacks_aid = self.lacks_aid();
+        let knows_place = validity.horizontal_position && validity.vertical_position;
         let has_compass =
             health.magnetometer || self.navigation.as_ref().is_some_and(Navigation::has_vision_heading);
         let checks = [
@@ -188,9 +189,9 @@ impl Perception {
                 "no velocity estimate",
             ),
             (
-                !aligned || !place || validity.horizontal_position && validity.vertical_position,
+                !aligned || !place || knows_place && !(ardupilot && lacks_aid.is_some()),
                 Subject::Position,
-                "no position estimate",
+                if ardupilot { "Need Position Estimate" } else { "no position estimate" },
             ),
             (!aligned || !height || validity.vertical_position, Subject::Position, "no height estimate"),
         ];

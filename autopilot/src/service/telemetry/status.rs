@@ -44,6 +44,7 @@ fn enabled(vehicle: &Vehicle, present: MavSysStatusSensor) -> MavSysStatusSensor
         (vehicle.fence().is_some(), MavSysStatusSensor::MAV_SYS_STATUS_GEOFENCE),
         (vehicle.obstacles().rangefinder_is_on(), MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_LASER_POSITION),
         (vehicle.obstacles().proximity_is_on(), MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_PROXIMITY),
+        (!vehicle.is_safe(), MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS),
     ];
     without_failed(present, &switches)
 }
@@ -154,12 +155,15 @@ pub fn battery_status(vehicle: &Vehicle) -> MavMessage {
 }
 
 /// SERVO_OUTPUT_RAW: the speeds of the front, right, back and left rotor as pulses, 1000 µs at rest, 2000 µs at the most, and the servos
-/// behind them, 0 where nothing drives one.
+/// behind them, 0 where nothing drives one. With the safety switch on, nothing drives any.
 pub fn servo_output_raw(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
     let fastest = vehicle.simulation().configuration().airframe.rotor_speed_max_rad_s;
     let [servo1_raw, servo2_raw, servo3_raw, servo4_raw] =
-        outputs.rotor_speed_rad_s.map(|speed| (1000.0 + 1000.0 * speed / fastest).round() as u16);
+        outputs.rotor_speed_rad_s.map(|speed| match vehicle.is_safe() {
+            true => 0,
+            false => (1000.0 + 1000.0 * speed / fastest).round() as u16,
+        });
     MavMessage::SERVO_OUTPUT_RAW(SERVO_OUTPUT_RAW_DATA {
         time_usec: boot_us(outputs.time_us),
         servo1_raw,

@@ -1,7 +1,7 @@
 //! What speaks against arming, and a battery that is gone.
 
 use super::flier::*;
-use mavlink::dialects::ardupilotmega::{MavCmd, MavResult};
+use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;
 use vehicle::plan::{Plan, PlanKind};
 
@@ -86,21 +86,75 @@ fn rotors_that_idle_at_another_speed_do_not_take_off() {
     }
 }
 
-/// As on a board without a safety switch: switching it off changes nothing, switching it on fails, and no other state exists.
+/// Switches the safety switch as clients have done before there was a command: by a base mode of the value of this flag.
+#[allow(deprecated)]
+fn set_by_mode(flier: &mut Flier, state: u32) {
+    let base_mode = MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED;
+    let data = SET_MODE_DATA { custom_mode: state, target_system: 1, base_mode };
+    flier.bench.send(MavMessage::SET_MODE(data));
+}
+
+/// Suite: SafetySwitch. SYS_STATUS tells the switch as whether the motors' outputs are enabled.
 #[test]
-fn there_is_no_safety_switch_to_be_switched_on() {
+fn nothing_turns_while_the_safety_switch_is_on() {
     let mut flier = Flier::new();
-    for (state, result) in [
-        (1.0, MavResult::MAV_RESULT_ACCEPTED),
-        (0.0, MavResult::MAV_RESULT_FAILED),
-        (2.0, MavResult::MAV_RESULT_DENIED),
-    ] {
-        let parameters = [state, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        let answer = flier.command(MavCmd::MAV_CMD_DO_SET_SAFETY_SWITCH_STATE, parameters);
-        assert_eq!(answer, result as u8, "{state}");
-    }
+    let command = |flier: &mut Flier, state: f32| {
+        flier.command(MavCmd::MAV_CMD_DO_SET_SAFETY_SWITCH_STATE, [state, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+    };
+    let pulse_us = |flier: &mut Flier, on: bool| {
+        flier.bench.heard.clear();
+        flier.fly(2.0);
+        let enabled = flier.latest(|message| match message {
+            MavMessage::SYS_STATUS(told) => Some(told.onboard_control_sensors_enabled),
+            _ => None,
+        });
+        let outputs = MavSysStatusSensor::MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS;
+        assert_eq!(enabled.map(|enabled| enabled.contains(outputs)), Some(!on));
+        flier.latest(|message| match message {
+            MavMessage::SERVO_OUTPUT_RAW(told) => Some(told.servo1_raw),
+            _ => None,
+        })
+    };
+    assert_eq!(pulse_us(&mut flier, false), Some(1000));
+    assert_eq!(command(&mut flier, 2.0), MavResult::MAV_RESULT_DENIED as u8);
+    assert_eq!(command(&mut flier, 0.0), ACCEPTED);
+    assert_eq!(pulse_us(&mut flier, true), Some(0));
+    assert!(flier.obstacles().iter().any(|text| text.contains("Hardware safety switch")));
+    let forced = [1.0, 21196.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_ne!(flier.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, forced), ACCEPTED);
+    let test = [1.0, 0.0, 20.0, 1.0, 1.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_DO_MOTOR_TEST, test), MavResult::MAV_RESULT_FAILED as u8);
+    set_by_mode(&mut flier, 0);
+    assert_eq!(pulse_us(&mut flier, false), Some(1000));
     flier.change_mode(GUIDED);
     assert_eq!(flier.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ARM), ACCEPTED);
+    set_by_mode(&mut flier, 1);
+    assert!(flier.has_said("disarm first"));
+    assert_eq!(command(&mut flier, 0.0), MavResult::MAV_RESULT_FAILED as u8, "the rotors turn");
+    assert!(!flier.vehicle().is_safe());
+    let mut flier = Flier::new();
+    flier.set("BRD_SAFETY_DEFLT", 1.0);
+    assert_eq!(pulse_us(&mut flier, false), Some(1000), "not before the next start");
+    flier.reboot();
+    assert_eq!(pulse_us(&mut flier, true), Some(0));
+}
+
+/// Suite: REQUIRE_LOCATION_FOR_ARMING.
+#[test]
+fn a_place_can_be_required_to_arm_in_any_mode() {
+    let mut flier = Flier::new();
+    let lacks_place = |flier: &mut Flier| {
+        flier.fly(1.0);
+        flier.obstacles().iter().any(|text| text.contains("Need Position Estimate"))
+    };
+    flier.set("SIM_GPS1_ENABLE", 0.0);
+    flier.change_mode(STABILIZE);
+    assert!(!lacks_place(&mut flier));
+    flier.set("ARMING_NEED_LOC", 1.0);
+    assert!(lacks_place(&mut flier));
+    assert_ne!(flier.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, ARM), ACCEPTED);
+    flier.set("SIM_GPS1_ENABLE", 1.0);
+    assert!(!lacks_place(&mut flier));
 }
 
 /// Suite: TerrainDBPreArm: a mission above the ground needs something that knows the ground.

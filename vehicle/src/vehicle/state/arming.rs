@@ -7,7 +7,7 @@ use super::super::notice::{Refusal, Severity};
 use super::super::plans::{check_reach, check_way};
 use super::super::set_point::PositionSetPoint;
 use super::Vehicle;
-use crate::mode::Mode;
+use crate::mode::{Mode, Needs};
 
 /// Leaning more than this, rad, it is not armed.
 const LARGEST_LEAN_RAD: f64 = 0.52;
@@ -23,6 +23,8 @@ impl Vehicle {
                 obstacles.extend(self.ardupilot_obstacles());
             }
         }
+        let safety = self.machines.safety.obstacle();
+        obstacles.extend(safety.map(|text| ArmingObstacle::from(text.to_owned())));
         obstacles
     }
 
@@ -43,7 +45,10 @@ impl Vehicle {
             let text = format!("battery at {:.0} %, required {:.0} %", 100.0 * remaining, 100.0 * needed);
             obstacles.push(ArmingObstacle::new(Subject::Battery, text));
         }
-        obstacles.extend(self.perception.obstacles(situation.mode.needs()));
+        let ardupilot = situation.identity.is_ardupilot();
+        let needs_place = ardupilot && situation.conduct.arming.needs_place;
+        let needs = if needs_place { Needs::Place } else { situation.mode.needs() };
+        obstacles.extend(self.perception.obstacles(needs, ardupilot));
         obstacles.extend(self.throttle_obstacle().map(ArmingObstacle::from));
         if situation.pilot.is_calibrating {
             obstacles.push(ArmingObstacle::from("RC calibrating".to_owned()));
@@ -102,7 +107,9 @@ impl Vehicle {
             return Ok(());
         }
         let obstacles = self.arming_obstacles();
-        if !force && !obstacles.is_empty() {
+        // Whoever arms by force, too, would have rotors that stand still.
+        let is_forced = force && !self.is_safe();
+        if !is_forced && !obstacles.is_empty() {
             return Err(Refusal::later(format!("Arming denied: {}", joined(&obstacles))));
         }
         self.decided.arm();

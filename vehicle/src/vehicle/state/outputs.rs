@@ -9,7 +9,7 @@ impl Vehicle {
     /// The pulse of an output that is no rotor's, counted from 1, µs; 0: none.
     pub fn output_us(&self, number: usize) -> u16 {
         let settings = &self.conduct().equipment;
-        let Some(output) = settings.output(number) else { return 0 };
+        let Some(output) = settings.output(number).filter(|_| !self.is_safe()) else { return 0 };
         match output.follows(number) {
             OutputFunction::Command => self.equipment().servos().pulse_us(number),
             OutputFunction::Radio { channel, scaled } => self.radio_output_us(output, channel, scaled),

@@ -159,7 +159,28 @@ impl Vehicle {
         if let Some(model) = self.foreign() {
             return Err(Refusal::Unsupported(format!("Motor Test: the rotors are those of {}", model.name)));
         }
+        if self.is_safe() {
+            return Err(Refusal::Failed("Motor Test: safety switch is on; switch it off first".to_owned()));
+        }
         self.consult(|parts, situation, proposal| parts.motor_tests.begin(situation, proposal, test))
+    }
+
+    /// Whether the safety switch keeps everything still.
+    pub fn is_safe(&self) -> bool {
+        self.machines.safety.is_on()
+    }
+
+    /// Switches the safety switch.
+    ///
+    /// # Errors
+    /// [`Refusal::Failed`] on while armed.
+    pub fn switch_safety(&mut self, on: bool) -> Result<(), Refusal> {
+        let armed = self.is_armed();
+        self.machines.safety.switch(on, armed)?;
+        if on {
+            self.end_motor_test();
+        }
+        Ok(())
     }
 
     /// Ends a test of rotors.
