@@ -178,6 +178,7 @@ impl Cascade {
         let period_us = configuration.controllers.position.sample_time_us;
         let vertical = self.acceleration_m_s2().z;
         let lean_rad = self.reference_lean_rad(configuration);
+        let is_bent = self.followed.gives_way();
         let motion = |reference: &PositionReference, interval_s: f64| {
             let required = RequiredThrust::of(configuration, reference, lean_rad);
             ReferenceMotion {
@@ -189,6 +190,7 @@ impl Cascade {
                 thrust_jerk: required.jerk_m_s3.xy(),
                 thrust_snap: required.snap_m_s4.xy(),
                 interval_s,
+                is_bent,
             }
         };
         let now = motion(reference, interval_s(&mut self.sampled.position_us, time_us, period_us));
@@ -238,6 +240,7 @@ impl Cascade {
             thrust_jerk: axis(&required.jerk_m_s3),
             thrust_snap: axis(&required.snap_m_s4),
             interval_s: interval_s(&mut self.sampled.altitude_us, time_us, period_us),
+            is_bent: self.followed.gives_way(),
         };
         let range = vertical_range(configuration, upright(&seen.body));
         let (applied, activity) = self.altitude.step(configuration, design, &seen.vertical(), &motion, range);

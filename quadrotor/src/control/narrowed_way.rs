@@ -13,6 +13,8 @@ const FOLLOWED: f64 = 1.3;
 /// Share of the angular acceleration that the rotors have in hover which is followed, whatever the limits allow: feedback that has none
 /// left turns the vehicle over.
 const OF_AVAILABLE: f64 = 0.9;
+/// Share of that which a vertical motion may use where its thrust swings at a lean: the horizontal motion and feedback have the rest.
+const SWUNG: f64 = 0.35;
 /// The largest acceleration down that is followed, as a share of gravity: what thrust is left turns the vehicle.
 const FALLEN: f64 = 0.8;
 /// Less than this, m/s², is not divided by.
@@ -94,6 +96,15 @@ impl NarrowedWay {
 
 /// The largest multiples of what is followed as it is that a reference asks for, horizontally and vertically. Horizontally it is what it asks
 /// for beside the share of its vertical motion that is followed.
+///
+/// A lean l = a/w, w being the vertical part of the thrust, turns as
+///
+/// ```text
+/// l′ = (j − l w′)/w,  l″ = (s − 2 l′ w′ − l w″)/w
+/// ```
+///
+/// Whatever leans swings with its thrust: of the vertical motion, no more is followed than what turns the lean of the reference, as far as it
+/// is within the limit, with a share of the rate and of the acceleration.
 fn asked(
     configuration: &Configuration,
     available_rad_s2: f64,
@@ -102,21 +113,26 @@ fn asked(
 ) -> Vector2<f64> {
     let limits = &configuration.limits;
     let (up_m_s2, down_m_s2) = level_range(configuration);
-    let mut whole = RequiredThrust::whole(configuration, reference);
+    let whole = RequiredThrust::whole(configuration, reference);
     let vertical_m_s2 = whole.acceleration_m_s2.z;
     let followed_m_s2 = if vertical_m_s2 > 0.0 { down_m_s2.min(FALLEN * GRAVITY_M_S2) } else { -up_m_s2 };
-    whole.acceleration_m_s2.z *= vertical_share;
-    let whole = whole.within_thrust(configuration);
-    let thrust_m_s2 = GRAVITY_M_S2 - whole.acceleration_m_s2.z;
-    let lean_m_s2 =
-        whole.most_horizontal_m_s2(configuration, commanded_tilt_rad(configuration)).max(LEAST_M_S2);
+    let followed = whole.with_vertical(vertical_share).within_thrust(configuration);
+    let most_m_s2 = followed.most_horizontal_m_s2(configuration, commanded_tilt_rad(configuration));
+    let rate_rad_s = FOLLOWED * limits.tilt_rate_rad_s;
     let acceleration_rad_s2 =
         (FOLLOWED * limits.tilt_acceleration_rad_s2).min(OF_AVAILABLE * available_rad_s2);
-    let lean = whole.acceleration_m_s2.xy().norm() / (FOLLOWED * lean_m_s2);
-    let rate = whole.jerk_m_s3.xy().norm() / (thrust_m_s2 * FOLLOWED * limits.tilt_rate_rad_s);
-    let acceleration = whole.snap_m_s4.xy().norm() / (thrust_m_s2 * acceleration_rad_s2);
-    let horizontal = lean.max(rate).max(acceleration);
-    let vertical = vertical_m_s2.abs() / followed_m_s2.max(LEAST_M_S2);
+
+    let [w, w_rate, w_bend] = followed.carrying();
+    let lean = followed.acceleration_m_s2.xy() / w;
+    let rate = (followed.jerk_m_s3.xy() - lean * w_rate) / w;
+    let bend = (followed.snap_m_s4.xy() - rate * (2.0 * w_rate) - lean * w_bend) / w;
+    let leant = followed.acceleration_m_s2.xy().norm() / (FOLLOWED * most_m_s2.max(LEAST_M_S2));
+    let horizontal = leant.max(rate.norm() / rate_rad_s).max(bend.norm() / acceleration_rad_s2);
+
+    let [_, w_rate, w_bend] = whole.carrying();
+    let swing = (w_rate.abs() / rate_rad_s).max(w_bend.abs() / acceleration_rad_s2) / GRAVITY_M_S2;
+    let swung = lean.norm().min(most_m_s2 / w) * swing / SWUNG;
+    let vertical = swung.max(vertical_m_s2.abs() / followed_m_s2.max(LEAST_M_S2));
     Vector2::new(horizontal, vertical).map(|asked| asked.min(MOST_ASKED))
 }
 
@@ -277,6 +293,38 @@ mod tests {
         // 183 m/s⁴ of 75
         let snap = ways[29_999].snap_m_s4.norm() / (GRAVITY_M_S2 * AVAILABLE_RAD_S2);
         assert!((0.7..1.0).contains(&snap), "{snap}");
+    }
+
+    /// Up and down by 0.1 m at 6 rad/s takes 3.6 m/s², of the 3.9 m/s² that the thrust allows. Level, it is followed as it is. A lean of 0.41 to
+    /// the north would have to turn with 5.4 rad/s² beside it: 0.35 of 7.65 rad/s² is followed, half of it, but for how much of the time the
+    /// lean is there.
+    #[test]
+    fn a_thrust_that_swings_at_a_lean_is_narrowed() {
+        let configuration = Configuration::default();
+        let swung = |north_m: f64| {
+            let mut way = NarrowedWay::default();
+            let mut largest_m_s2 = 0.0_f64;
+            for step in 0..40_000 {
+                let time_us = step * STEP_US;
+                let along = |size_m: f64, rate_rad_s: f64, order: u8| {
+                    let angle = rate_rad_s * 1e-6 * time_us as f64 + f64::from(order) * FRAC_PI_2;
+                    size_m * rate_rad_s.powi(i32::from(order)) * libm::cos(angle)
+                };
+                let reference = known_motion::motion(|order| {
+                    let order = u8::try_from(order).unwrap();
+                    Vector3::new(along(north_m, 1.0, order), 0.0, along(0.1, 6.0, order))
+                });
+                let followed =
+                    way.follow(&configuration, AVAILABLE_RAD_S2, &reference, time_us).unwrap_or(reference);
+                if step >= 20_000 {
+                    largest_m_s2 = largest_m_s2.max(followed.acceleration_m_s2.z.abs());
+                }
+            }
+            largest_m_s2
+        };
+        let (level_m_s2, leaning_m_s2) = (swung(0.01), swung(4.0));
+        assert!((level_m_s2 - 3.6).abs() < 1e-3, "{level_m_s2}");
+        assert!((0.45 * 3.6..0.75 * 3.6).contains(&leaning_m_s2), "{leaning_m_s2}");
     }
 
     /// Up and down by 1 m at 4 rad/s takes 16 m/s², of which a thrust of at least 0.6 of the weight leaves 3.9 down, and one of two weights 9.8

@@ -33,6 +33,10 @@ const ASKED: [usize; 9] = [5, 10, 15, 20, 26, 34, 50, 80, 110];
 /// So many of them until what goes straight on does not speed up any more.
 const FADED: usize = 4;
 
+/// Share of the jump of its jerk with which a way is seen that limits bend, and no jump of its snap: mostly the next bend takes it back. A
+/// law that answers the whole of it swings beyond the limits, and one that sees none of it loses the way.
+const BENT: f64 = 0.5;
+
 /// State of the position controller.
 ///
 /// Its inputs stand for θ and φ of (14): ẍ = −g θ north and ÿ = g φ east hold exactly, for any tilt and heading, because the cascade
@@ -93,11 +97,13 @@ impl PositionController {
         let (moved, asked) = foreseen(law, &turn, reference, (ahead, asked));
         let deviation = with_position(&(measured - state_of(reference)), &error);
         let [jerk_jump, snap_jump] = reference.jumps_since(&self.reference);
+        let [seen_jerk_jump, seen_snap_jump] =
+            if reference.is_bent { [jerk_jump * BENT, zero] } else { [jerk_jump, snap_jump] };
         let motion = MotionSample {
             deviation,
             change: measured - self.controller.measured() - motion_of(reference, &self.reference),
             feedback: self.controller.feedback(),
-            jump: by_axis([zero, zero, zero, jerk_jump, snap_jump, zero]),
+            jump: by_axis([zero, zero, zero, seen_jerk_jump, seen_snap_jump, zero]),
         };
         let sample_time_s = configuration.controllers.position.sample_time_s();
         let increment = self.observed.step(design.position.motion.as_ref(), &motion, sample_time_s);

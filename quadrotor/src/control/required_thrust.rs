@@ -53,6 +53,16 @@ impl RequiredThrust {
         }
     }
 
+    /// With a share of its vertical motion.
+    pub(crate) fn with_vertical(&self, share: f64) -> Self {
+        let each = |whole: &Vector3<f64>| Vector3::new(whole.x, whole.y, share * whole.z);
+        Self {
+            acceleration_m_s2: each(&self.acceleration_m_s2),
+            jerk_m_s3: each(&self.jerk_m_s3),
+            snap_m_s4: each(&self.snap_m_s4),
+        }
+    }
+
     /// Within the thrust and a largest lean, rad.
     pub(crate) fn within(&self, configuration: &Configuration, lean_rad: f64) -> Self {
         let within = self.within_thrust(configuration);
@@ -123,7 +133,7 @@ impl RequiredThrust {
     }
 
     /// w = g − a_z and its derivatives.
-    fn carrying(&self) -> [f64; 3] {
+    pub(crate) fn carrying(&self) -> [f64; 3] {
         [GRAVITY_M_S2 - self.acceleration_m_s2.z, -self.jerk_m_s3.z, -self.snap_m_s4.z]
     }
 

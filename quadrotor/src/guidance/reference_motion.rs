@@ -22,6 +22,8 @@ pub struct ReferenceMotion<const AXES: usize> {
     pub thrust_snap: SVector<f64, AXES>,
     /// Time since the previous sample, s; 0 before the first one.
     pub interval_s: f64,
+    /// Whether limits bend it: it jumps in its jerk where they begin to hold it, and where they end.
+    pub is_bent: bool,
 }
 
 /// Nothing has been tracked yet: at rest.
@@ -37,6 +39,7 @@ impl<const AXES: usize> Default for ReferenceMotion<AXES> {
             thrust_jerk: zero,
             thrust_snap: zero,
             interval_s: 0.0,
+            is_bent: false,
         }
     }
 }

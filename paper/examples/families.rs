@@ -1,0 +1,303 @@
+//! Flies random flights that nobody has tuned for, by family, and prints how each controller did:
+//!
+//! ```text
+//! cargo run -p paper --example families -- --only upright,small --seeds 60 --csv target/tracks
+//! ```
+//!
+//! References are raw. The figures of a flight are those of its family: how far off its reference the vehicle was over the last 20 s (RMS), how
+//! far beyond its goal and beside the straight way to it, when it settled, and how far tilt and speed left their limits.
+
+use std::error::Error;
+use std::f64::consts::TAU;
+use std::fs;
+use std::path::PathBuf;
+
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::{Rng, SeedableRng};
+use clap::Parser;
+use nalgebra::Vector3;
+use paper::bars::{Demand, Flyer, Path, Plan, Shape, Track, flown, plans};
+use quadrotor::{AirframePreset, Configuration};
+use rayon::prelude::*;
+
+/// Flies random flights by family.
+#[derive(Parser)]
+struct Arguments {
+    /// Only these families.
+    #[arg(long, value_delimiter = ',')]
+    only: Vec<String>,
+    /// Flights of each family.
+    #[arg(long, default_value_t = 40)]
+    seeds: u64,
+    /// Only the flight with this seed.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Only these controllers: lmpc, ssmpc, dlqr, governed.
+    #[arg(long, value_delimiter = ',')]
+    kind: Vec<String>,
+    /// Prints so many of the flights of each family in which Laguerre MPC is furthest behind the regulator.
+    #[arg(long, default_value_t = 4)]
+    worst: usize,
+    /// Writes each flight as a CSV file to this folder.
+    #[arg(long, value_name = "DIR")]
+    csv: Option<PathBuf>,
+}
+
+/// Uniform numbers of one flight.
+struct Draw(ChaCha8Rng);
+
+impl Draw {
+    fn unit(&mut self) -> f64 {
+        f64::from(self.0.next_u32()) / f64::from(u32::MAX)
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// As many small ones as large ones.
+    fn scaled(&mut self, low: f64, high: f64) -> f64 {
+        self.between(low.ln(), high.ln()).exp()
+    }
+
+    fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
+        all[(self.0.next_u32() as usize) % all.len()]
+    }
+
+    /// A place at a distance, m, at most so steep.
+    fn place_m(&mut self, distance_m: f64, steepest_rad: f64) -> [f64; 3] {
+        let (heading, climb) = (self.between(0.0, TAU), self.between(-steepest_rad, steepest_rad));
+        [
+            distance_m * climb.cos() * heading.cos(),
+            distance_m * climb.cos() * heading.sin(),
+            -distance_m * climb.sin(),
+        ]
+    }
+}
+
+/// A kind of flights.
+struct Family {
+    name: &'static str,
+    change: fn(&mut Draw, &mut Plan),
+}
+
+const FAMILIES: [Family; 12] = [
+    Family { name: "goal", change: goal },
+    Family { name: "wind", change: wind },
+    Family { name: "low-tilt", change: low_tilt },
+    Family { name: "slow-rate", change: slow_rate },
+    Family { name: "slow-rotors", change: slow_rotors },
+    Family { name: "path", change: |draw, plan| path(draw, plan, (1.0, 8.0), (0.4, 1.2), &LEVEL) },
+    Family { name: "upright", change: |draw, plan| path(draw, plan, (0.5, 6.0), (0.5, 2.5), &CLIMBING) },
+    Family { name: "small", change: |draw, plan| path(draw, plan, (0.1, 1.0), (1.5, 4.5), &ALL) },
+    Family { name: "points", change: points },
+    Family { name: "jumps", change: jumps },
+    Family { name: "to-and-fro", change: to_and_fro },
+    Family { name: "tilted-start", change: tilted_start },
+];
+
+const LEVEL: [Shape; 2] = [Shape::FigureEight, Shape::Circle];
+const CLIMBING: [Shape; 2] = [Shape::UprightEight, Shape::TiltedCircle];
+const ALL: [Shape; 4] = [Shape::FigureEight, Shape::Circle, Shape::UprightEight, Shape::TiltedCircle];
+
+fn goal(draw: &mut Draw, plan: &mut Plan) {
+    let distance_m = draw.scaled(1.0, 200.0);
+    (plan.demand, plan.duration_s) = (Demand::Goal(draw.place_m(distance_m, 1.0)), 20.0 + distance_m / 1.5);
+    let limits = &mut plan.configuration.limits;
+    limits.speed_horizontal_m_s *= draw.scaled(0.3, 1.5);
+}
+
+fn wind(draw: &mut Draw, plan: &mut Plan) {
+    let distance_m = draw.scaled(1.0, 60.0);
+    (plan.demand, plan.duration_s) = (Demand::Goal(draw.place_m(distance_m, 0.7)), 30.0 + distance_m);
+    let share = draw.between(0.05, 0.25) * plan.configuration.airframe.weight_n();
+    plan.force_n = draw.place_m(share, 0.3);
+}
+
+fn low_tilt(draw: &mut Draw, plan: &mut Plan) {
+    goal(draw, plan);
+    plan.configuration.limits.tilt_rad = draw.between(8.0, 20.0).to_radians();
+    let most_m_s2 = 0.9 * quadrotor::GRAVITY_M_S2 * quadrotor::commanded_tilt_rad(&plan.configuration).tan();
+    let limits = &mut plan.configuration.limits;
+    limits.acceleration_horizontal_m_s2 = limits.acceleration_horizontal_m_s2.min(most_m_s2);
+}
+
+fn slow_rate(draw: &mut Draw, plan: &mut Plan) {
+    goal(draw, plan);
+    plan.configuration.limits.tilt_rate_rad_s = draw.scaled(0.4, 2.0);
+}
+
+fn slow_rotors(draw: &mut Draw, plan: &mut Plan) {
+    goal(draw, plan);
+    plan.configuration.airframe.rotor_time_constant_s = draw.scaled(0.03, 0.12);
+}
+
+fn path(draw: &mut Draw, plan: &mut Plan, size_m: (f64, f64), rate_rad_s: (f64, f64), shapes: &[Shape]) {
+    let path = Path {
+        shape: draw.one_of(shapes),
+        size_m: draw.scaled(size_m.0, size_m.1),
+        rate_rad_s: draw.between(rate_rad_s.0, rate_rad_s.1),
+    };
+    plan.configuration.initial.position_m = path.derivative(0.0, 0).into();
+    (plan.demand, plan.duration_s) = (Demand::Path(path), 30.0);
+}
+
+fn points(draw: &mut Draw, plan: &mut Plan) {
+    path(draw, plan, (0.5, 6.0), (0.3, 1.5), &ALL);
+    let Demand::Path(path) = plan.demand else { return };
+    let derivatives = draw.one_of(&[0, 1, 2]);
+    plan.demand = Demand::Points(path, derivatives, draw.one_of(&[0.02, 0.05, 0.1]));
+}
+
+fn jumps(draw: &mut Draw, plan: &mut Plan) {
+    (plan.demand, plan.duration_s) = (Demand::Jumps(draw.scaled(1.0, 40.0)), 45.0);
+}
+
+fn to_and_fro(draw: &mut Draw, plan: &mut Plan) {
+    (plan.demand, plan.duration_s) = (Demand::ToAndFro(draw.scaled(0.5, 9.0)), 40.0);
+}
+
+fn tilted_start(draw: &mut Draw, plan: &mut Plan) {
+    let distance_m = draw.scaled(0.5, 20.0);
+    (plan.demand, plan.duration_s) = (Demand::Goal(draw.place_m(distance_m, 0.5)), 30.0);
+    let initial = &mut plan.configuration.initial;
+    initial.attitude_rad = [draw.between(-0.5, 0.5), draw.between(-0.5, 0.5), draw.between(-3.0, 3.0)];
+    initial.velocity_m_s = draw.place_m(1.0, 1.0).map(|value| 2.0 * value);
+}
+
+/// Numbers of a flight, the smaller the better.
+const FIGURES: [&str; 6] = ["off, m", "beyond, m", "aside, m", "settled, s", "tilt, °", "speed, share"];
+
+fn figures(plan: &Plan, track: &Track) -> [f64; FIGURES.len()] {
+    let limits = &plan.configuration.limits;
+    let most =
+        |value: &dyn Fn(&paper::bars::Moment) -> f64| track.moments.iter().map(value).fold(0.0, f64::max);
+    let last = track.last(20.0);
+    let squares: f64 = last.iter().map(|moment| moment.error_m().norm_squared()).sum();
+    let off_m = (squares / last.len().max(1) as f64).sqrt();
+    let (beyond_m, aside_m) = if let Demand::Goal(goal_m) = plan.demand {
+        let goal = Vector3::from(goal_m);
+        let towards = goal.normalize();
+        let along = |moment: &paper::bars::Moment| towards.dot(&(moment.position_m - goal));
+        let aside = |moment: &paper::bars::Moment| {
+            let level = |vector: Vector3<f64>| Vector3::new(vector.x, vector.y, 0.0);
+            let way = level(towards).try_normalize(1e-9).unwrap_or_default();
+            let place = level(moment.position_m);
+            (place - way * way.dot(&place)).norm()
+        };
+        (most(&along), most(&aside))
+    } else {
+        (0.0, 0.0)
+    };
+    // A reference that is too fast is another's plan.
+    let fastest = track.moments.windows(2).map(|pair| {
+        let moved = pair[1].reference_m - pair[0].reference_m;
+        moved.xy().norm() / (pair[1].time_s - pair[0].time_s)
+    });
+    let fastest_m_s = match plan.demand {
+        Demand::Path(_) | Demand::Points(..) | Demand::ToAndFro(_) => fastest.fold(0.0, f64::max),
+        _ => 0.0,
+    };
+    let speed_m_s = limits.speed_horizontal_m_s.max(fastest_m_s);
+    [
+        off_m,
+        beyond_m,
+        aside_m,
+        track.settled_s().min(999.0),
+        (most(&|moment| moment.tilt_rad()) - limits.tilt_rad).to_degrees().max(0.0),
+        most(&|moment| moment.velocity_m_s.xy().norm()) / speed_m_s,
+    ]
+}
+
+/// The flight of a family with a seed, on any of the airframes.
+fn plan(family: &Family, seed: u64) -> Result<Plan, Box<dyn Error + Send + Sync>> {
+    let mut draw = Draw(ChaCha8Rng::seed_from_u64(seed));
+    let preset = draw.one_of(&AirframePreset::ALL);
+    let mut configuration = Configuration::for_airframe(&preset.airframe())?;
+    configuration.reference.shaping = false;
+    let mut plan = plans(&configuration).swap_remove(0);
+    plan.configuration = configuration;
+    (family.change)(&mut draw, &mut plan);
+    plan.name = format!("{} {seed}", family.name);
+    Ok(plan)
+}
+
+fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
+    let arguments = Arguments::parse();
+    let flyers: Vec<Flyer> =
+        [Flyer::LaguerreMpc, Flyer::StateSpaceMpc, Flyer::Regulator, Flyer::GovernedRegulator]
+            .into_iter()
+            .filter(|flyer| arguments.kind.is_empty() || arguments.kind.iter().any(|key| key == flyer.key()))
+            .collect();
+    let chosen =
+        |family: &&Family| arguments.only.is_empty() || arguments.only.iter().any(|name| name == family.name);
+    for family in FAMILIES.iter().filter(chosen) {
+        let seeds: Vec<u64> =
+            arguments.seed.map_or_else(|| (0..arguments.seeds).collect(), |seed| vec![seed]);
+        let flights: Vec<_> = seeds
+            .par_iter()
+            .map(|seed| {
+                let plan = plan(family, *seed)?;
+                let tracks = flown(&plan, &flyers).tracks;
+                if let Some(folder) = &arguments.csv {
+                    fs::create_dir_all(folder)?;
+                    for (flyer, track) in &tracks {
+                        fs::write(
+                            folder.join(format!("{}-{seed}-{}.csv", family.name, flyer.key())),
+                            track.csv(),
+                        )?;
+                    }
+                }
+                let of = |flyer: &Flyer| {
+                    let track = tracks.iter().find(|(one, _)| one == flyer);
+                    track.map_or([f64::INFINITY; FIGURES.len()], |(_, track)| figures(&plan, track))
+                };
+                Ok((plan.clone(), flyers.iter().map(of).collect::<Vec<_>>()))
+            })
+            .collect::<Result<_, Box<dyn Error + Send + Sync>>>()?;
+        print_family(family, &flyers, &flights);
+        print_worst(&flights, &flyers, arguments.worst);
+    }
+    Ok(())
+}
+
+fn print_family(family: &Family, flyers: &[Flyer], flights: &[(Plan, Vec<[f64; FIGURES.len()]>)]) {
+    println!("\n{}: median, 90 %, worst of {}", family.name, flights.len());
+    let header: String = flyers.iter().map(|flyer| format!("{:>30}", flyer.name())).collect();
+    println!("{:14}{header}", "");
+    for (at, figure) in FIGURES.iter().enumerate() {
+        let cells = (0..flyers.len()).map(|flyer| {
+            let mut values: Vec<f64> = flights.iter().map(|(_, figures)| figures[flyer][at]).collect();
+            values.sort_by(f64::total_cmp);
+            let place = |share: f64| values[((values.len() - 1) as f64 * share).round() as usize];
+            format!("{:>12.3}{:>9.3}{:>9.3}", place(0.5), place(0.9), place(1.0))
+        });
+        println!("  {figure:12}{}", cells.collect::<String>());
+    }
+}
+
+/// Those in which the first flyer is furthest behind the best of the others.
+fn print_worst(flights: &[(Plan, Vec<[f64; FIGURES.len()]>)], flyers: &[Flyer], count: usize) {
+    if flyers.len() < 2 {
+        return;
+    }
+    let behind = |figures: &[[f64; FIGURES.len()]]| {
+        let best_m = figures[1..].iter().map(|figures| figures[0]).fold(f64::INFINITY, f64::min);
+        figures[0][0] / best_m.max(0.02)
+    };
+    let mut order: Vec<_> = flights.iter().collect();
+    order.sort_by(|one, other| behind(&other.1).total_cmp(&behind(&one.1)));
+    for (plan, figures) in order.into_iter().take(count) {
+        println!("  {}: {:?} with {}", plan.name, plan.demand, airframe_name(plan));
+        for (flyer, figures) in flyers.iter().zip(figures) {
+            let cells: String = figures.iter().map(|value| format!("{value:10.3}")).collect();
+            println!("    {:16}{cells}", flyer.name());
+        }
+    }
+}
+
+fn airframe_name(plan: &Plan) -> &'static str {
+    let weight = plan.configuration.airframe.weight_n();
+    let near = |preset: &&AirframePreset| (preset.airframe().weight_n() - weight).abs() < 1e-9;
+    AirframePreset::ALL.iter().find(near).map_or("another airframe", |preset| preset.name())
+}
