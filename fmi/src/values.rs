@@ -8,7 +8,7 @@ use crate::input_derivative::{InputDerivative, MAXIMUM_ORDER, continuous};
 use crate::instance::Instance;
 use crate::lifecycle::Phase;
 use crate::model::Model;
-use crate::variables::{Field, Role, Type, Value, ValueReference, Variable, variable};
+use crate::variables::{Field, Role, Signal, Type, Value, ValueReference, Variable, found, variable};
 
 impl<M: Model> Instance<M> {
     /// Values of variables of one type, each given to `put` with its place. Nothing is put unless all
@@ -19,12 +19,22 @@ impl<M: Model> Instance<M> {
         references: &[ValueReference],
         mut put: impl FnMut(usize, Value),
     ) -> Result<(), CallError> {
-        for &reference in references {
-            typed::<M>(reference, value_type)?;
+        // Errors are large: what is good, as almost always, is found without a place for one.
+        if let Some(&wrong) = references.iter().find(|&&reference| !has_type::<M>(reference, value_type)) {
+            typed::<M>(wrong, value_type)?;
         }
         for (place, &reference) in references.iter().enumerate() {
-            let value = self.value(reference, variable::<M>(reference)?)?;
-            put(place, value);
+            let Some(variable) = found::<M>(reference) else {
+                return Err(CallError::UnknownReference { reference });
+            };
+            // Mostly several real outputs are read, and from the second one on they are there.
+            if let Role::Output { signal: Signal::Real { get, .. }, .. } = &variable.role
+                && let Some(number) = self.outputs.as_ref().map(get).filter(|number| number.is_finite())
+            {
+                put(place, Value::Real(number));
+                continue;
+            }
+            put(place, self.value(reference, variable)?);
         }
         Ok(())
     }
@@ -128,10 +138,6 @@ impl<M: Model> Instance<M> {
     }
 
     fn value(&mut self, reference: ValueReference, variable: &Variable<M>) -> Result<Value, CallError> {
-        // Mostly several outputs are read, and from the second one on they are there.
-        if let (Role::Output { signal, .. }, Some(outputs)) = (&variable.role, &self.outputs) {
-            return finite(variable, signal.get(outputs));
-        }
         Ok(match &variable.role {
             Role::Input(field) => field.get(&self.settings.inputs),
             Role::Parameter { field, .. } => field.get(&M::as_read(&self.settings.parameters)),
@@ -156,6 +162,12 @@ fn check_derivative<M: Model>(derivative: &InputDerivative) -> Result<(), CallEr
         return Err(CallError::DerivativeNotFinite { name, order, value });
     }
     Ok(())
+}
+
+/// Whether there is a variable with this reference, and of this type.
+#[inline]
+fn has_type<M: Model>(reference: ValueReference, asked: Type) -> bool {
+    found::<M>(reference).is_some_and(|variable| variable.value_type().of_functions() == asked)
 }
 
 /// The variable with this reference, if it has this type.

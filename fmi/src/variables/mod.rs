@@ -15,4 +15,4 @@ pub use quantity::{Choice, Quantity, Unit};
 pub use terminal::{Matching, Terminal};
 pub use value::{Type, Value};
 pub use variable::{Role, ValueReference, Variable};
-pub(crate) use variable::{named, variable, variables};
+pub(crate) use variable::{found, named, variable, variables};

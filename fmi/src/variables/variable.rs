@@ -263,12 +263,21 @@ pub(crate) fn variables<M: Model>() -> impl Iterator<Item = (ValueReference, &'s
 
 /// The variable with this value reference.
 pub(crate) fn variable<M: Model>(reference: ValueReference) -> Result<&'static Variable<M>, CallError> {
+    match found::<M>(reference) {
+        Some(variable) => Ok(variable),
+        None => Err(CallError::UnknownReference { reference }),
+    }
+}
+
+/// The variable with this value reference, if there is one.
+#[inline]
+pub(crate) fn found<M: Model>(reference: ValueReference) -> Option<&'static Variable<M>> {
     let mut place = usize::try_from(reference).unwrap_or(usize::MAX);
     for group in M::VARIABLES {
         match group.get(place) {
-            Some(variable) => return Ok(variable),
+            Some(variable) => return Some(variable),
             None => place -= group.len(),
         }
     }
-    Err(CallError::UnknownReference { reference })
+    None
 }
