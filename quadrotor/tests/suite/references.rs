@@ -127,7 +127,7 @@ fn held_inputs_are_followed_as_continuous_ones() {
 /// Root mean square of the distance to a circle of 5 m at 0.5 rad/s, flown under the default limits from rest on it, in its second half
 /// of 40 s, m. It is set each `period_us`, with as many derivatives as asked for.
 fn streamed(derivatives: i32, period_us: u64) -> f64 {
-    let circle = Trajectory { amplitude_m: [5.0; 2], ..Trajectory::circle(0.5) };
+    let circle = Trajectory { amplitude_m: [5.0, 5.0, 0.0], ..Trajectory::circle(0.5) };
     let inputs = move |time_us: u64| {
         let t = (time_us / period_us * period_us) as f64 * 1e-6;
         let given =
@@ -283,7 +283,11 @@ fn a_geometric_controller_tracks_by_the_flat_attitude() {
 
 /// A circle of an airframe at its rate, from rest on: root mean square of the distance in the second half of 20 s, m.
 fn circled(configuration: &Configuration, (radius_m, rate_rad_s): (f64, f64), kind: ControllerKind) -> f64 {
-    flown(configuration, &Trajectory { amplitude_m: [radius_m; 2], ..Trajectory::circle(rate_rad_s) }, kind)
+    flown(
+        configuration,
+        &Trajectory { amplitude_m: [radius_m, radius_m, 0.0], ..Trajectory::circle(rate_rad_s) },
+        kind,
+    )
 }
 
 /// The same of any way.
