@@ -24,7 +24,7 @@ use rayon::prelude::*;
 #[derive(Parser)]
 struct Arguments {
     /// Only these families.
-    #[arg(long, value_delimiter = ',')]
+    #[arg(long, value_name = "FAMILY", value_delimiter = ',', value_parser = FAMILIES.map(|family| family.name))]
     only: Vec<String>,
     /// Flights of each family.
     #[arg(long, default_value_t = 40)]
@@ -32,16 +32,20 @@ struct Arguments {
     /// Only the flight with this seed.
     #[arg(long)]
     seed: Option<u64>,
-    /// Only these controllers: lmpc, ssmpc, dlqr, governed.
-    #[arg(long, value_delimiter = ',')]
+    /// Only these controllers.
+    #[arg(long, value_delimiter = ',', value_parser = FLYERS.map(Flyer::key))]
     kind: Vec<String>,
-    /// Prints so many of the flights of each family in which Laguerre MPC is furthest behind the regulator.
+    /// Prints so many of the flights of each family in which the first controller is furthest behind the others.
     #[arg(long, default_value_t = 4)]
     worst: usize,
     /// Writes each flight as a CSV file to this folder.
     #[arg(long, value_name = "DIR")]
     csv: Option<PathBuf>,
 }
+
+/// Those who fly raw goals, too.
+const FLYERS: [Flyer; 4] =
+    [Flyer::LaguerreMpc, Flyer::StateSpaceMpc, Flyer::Regulator, Flyer::GovernedRegulator];
 
 /// Uniform numbers of one flight.
 struct Draw(ChaCha8Rng);
@@ -168,6 +172,7 @@ fn tilted_start(draw: &mut Draw, plan: &mut Plan) {
 /// Numbers of a flight, the smaller the better.
 const FIGURES: [&str; 6] = ["off, m", "beyond, m", "aside, m", "settled, s", "tilt, °", "speed, share"];
 
+/// Those of a flight.
 fn figures(plan: &Plan, track: &Track) -> [f64; FIGURES.len()] {
     let limits = &plan.configuration.limits;
     let most =
@@ -224,11 +229,10 @@ fn plan(family: &Family, seed: u64) -> Result<Plan, Box<dyn Error + Send + Sync>
 
 fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
     let arguments = Arguments::parse();
-    let flyers: Vec<Flyer> =
-        [Flyer::LaguerreMpc, Flyer::StateSpaceMpc, Flyer::Regulator, Flyer::GovernedRegulator]
-            .into_iter()
-            .filter(|flyer| arguments.kind.is_empty() || arguments.kind.iter().any(|key| key == flyer.key()))
-            .collect();
+    let flyers: Vec<Flyer> = FLYERS
+        .into_iter()
+        .filter(|flyer| arguments.kind.is_empty() || arguments.kind.iter().any(|key| key == flyer.key()))
+        .collect();
     let chosen =
         |family: &&Family| arguments.only.is_empty() || arguments.only.iter().any(|name| name == family.name);
     for family in FAMILIES.iter().filter(chosen) {
