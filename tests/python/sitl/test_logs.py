@@ -228,10 +228,10 @@ def streamed(client, lost, fly) -> tuple[bytes, int]:
 
 def test_a_log_is_streamed_while_it_is_written(start, connect, tmp_path):
     client = connect(start("--speed", "2", "--set", "RTL_RETURN_ALT=12.5"))
-    heights = []
+    heights, landed_ms = [], []
 
     def fly(message):
-        """Takes off to 2.5 m and lands."""
+        """Takes off to 2.5 m, lands, and stays for a second: the stream is behind the flight."""
         ask = lambda number, *values: client.mav.command_long_send(*client.target, number, 0, *values, *[math.nan] * (7 - len(values)))  # noqa: E731
         if not heights:
             ask(mavlink.MAV_CMD_NAV_TAKEOFF)
@@ -239,7 +239,9 @@ def test_a_log_is_streamed_while_it_is_written(start, connect, tmp_path):
         elif max(heights) < 2.4 <= -message.z:
             ask(mavlink.MAV_CMD_NAV_LAND)
         heights.append(-message.z)
-        return max(heights) > 2.4 and heights[-1] < 0.02
+        if max(heights) > 2.4 and heights[-1] < 0.02:
+            landed_ms.append(message.time_boot_ms)
+        return bool(landed_ms) and landed_ms[-1] - landed_ms[0] >= 1000
 
     log, lost = streamed(client, lambda sequence: sequence % 7 == 3, fly)
     assert lost >= 5
