@@ -80,9 +80,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut results = Vec::new();
     for (plan, flown) in flights {
         if let Some(folder) = &arguments.csv {
-            fs::create_dir_all(folder)?;
             for (flyer, track) in &flown.tracks {
-                fs::write(file(folder, &plan.name, flyer.key()), track.csv())?;
+                track.write_csv(folder, &plan.name, flyer.key())?;
             }
         }
         results.push(flown.results);
@@ -106,11 +105,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let passed = lmpc().filter(|result| result.passed == Some(true)).count();
     println!("\nLMPC keeps {passed} of {judged} bars");
     Ok(())
-}
-
-fn file(folder: &Path, flight: &str, key: &str) -> PathBuf {
-    folder
-        .join(format!("{}-{key}.csv", flight.replace(|c: char| !c.is_ascii_alphanumeric() && c != '.', "-")))
 }
 
 fn set(configuration: &mut Configuration, setting: &str) -> Result<(), Box<dyn Error>> {
@@ -175,7 +169,7 @@ fn print_optima(optima: &[Optimum], plans: &[Plan], csv: Option<&Path>) -> Resul
         let (result, track) = optimum.measured(plan);
         println!("\n{result:#?}");
         if let Some(folder) = csv {
-            fs::write(file(folder, &plan.name, &optimum.objective.replace(' ', "-")), track.csv())?;
+            track.write_csv(folder, &plan.name, &optimum.objective.replace(' ', "-"))?;
         }
     }
     Ok(())

@@ -9,14 +9,13 @@
 
 use std::error::Error;
 use std::f64::consts::TAU;
-use std::fs;
 use std::path::PathBuf;
 
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
 use clap::Parser;
 use nalgebra::Vector3;
-use paper::bars::{Demand, Flyer, Path, Plan, Shape, Track, flown, plans};
+use paper::bars::{Demand, Flyer, Moment, Path, Plan, Row, Shape, Track, fly, largest, rms};
 use quadrotor::{AirframePreset, Configuration};
 use rayon::prelude::*;
 
@@ -175,43 +174,46 @@ const FIGURES: [&str; 6] = ["off, m", "beyond, m", "aside, m", "settled, s", "ti
 /// Those of a flight.
 fn figures(plan: &Plan, track: &Track) -> [f64; FIGURES.len()] {
     let limits = &plan.configuration.limits;
-    let most =
-        |value: &dyn Fn(&paper::bars::Moment) -> f64| track.moments.iter().map(value).fold(0.0, f64::max);
-    let last = track.last(20.0);
-    let squares: f64 = last.iter().map(|moment| moment.error_m().norm_squared()).sum();
-    let off_m = (squares / last.len().max(1) as f64).sqrt();
-    let (beyond_m, aside_m) = if let Demand::Goal(goal_m) = plan.demand {
-        let goal = Vector3::from(goal_m);
-        let towards = goal.normalize();
-        let along = |moment: &paper::bars::Moment| towards.dot(&(moment.position_m - goal));
-        let aside = |moment: &paper::bars::Moment| {
-            let level = |vector: Vector3<f64>| Vector3::new(vector.x, vector.y, 0.0);
-            let way = level(towards).try_normalize(1e-9).unwrap_or_default();
-            let place = level(moment.position_m);
-            (place - way * way.dot(&place)).norm()
-        };
-        (most(&along), most(&aside))
-    } else {
-        (0.0, 0.0)
+    let most = |value: &dyn Fn(&Moment) -> f64| largest(&track.moments, value).max(0.0);
+    let [beyond_m, aside_m] = match plan.demand {
+        Demand::Goal(goal_m) => beside_the_way(track, &Vector3::from(goal_m)),
+        _ => [0.0; 2],
     };
     // A reference that is too fast is another's plan.
-    let fastest = track.moments.windows(2).map(|pair| {
-        let moved = pair[1].reference_m - pair[0].reference_m;
-        moved.xy().norm() / (pair[1].time_s - pair[0].time_s)
-    });
     let fastest_m_s = match plan.demand {
-        Demand::Path(_) | Demand::Points(..) | Demand::ToAndFro(_) => fastest.fold(0.0, f64::max),
+        Demand::Path(_) | Demand::Points(..) | Demand::ToAndFro(_) => fastest_reference_m_s(track),
         _ => 0.0,
     };
     let speed_m_s = limits.speed_horizontal_m_s.max(fastest_m_s);
     [
-        off_m,
+        rms(track.last(20.0), |moment| moment.error_m().norm()),
         beyond_m,
         aside_m,
         track.settled_s().min(999.0),
-        (most(&|moment| moment.tilt_rad()) - limits.tilt_rad).to_degrees().max(0.0),
+        most(&|moment| moment.tilt_rad() - limits.tilt_rad).to_degrees(),
         most(&|moment| moment.velocity_m_s.xy().norm()) / speed_m_s,
     ]
+}
+
+/// How far beyond a goal, m, and how far beside the level way to it from the origin.
+fn beside_the_way(track: &Track, goal_m: &Vector3<f64>) -> [f64; 2] {
+    let towards = goal_m.normalize();
+    let way = goal_m.xy().try_normalize(1e-9).unwrap_or_default();
+    let aside_m = |moment: &Moment| {
+        let place_m = moment.position_m.xy();
+        (place_m - way * way.dot(&place_m)).norm()
+    };
+    let beyond_m = largest(&track.moments, |moment| towards.dot(&(moment.position_m - goal_m)));
+    [beyond_m.max(0.0), largest(&track.moments, aside_m)]
+}
+
+/// The largest horizontal speed of what was asked for, m/s.
+fn fastest_reference_m_s(track: &Track) -> f64 {
+    let speeds_m_s = track.moments.windows(2).map(|pair| {
+        let moved = pair[1].reference_m - pair[0].reference_m;
+        moved.xy().norm() / (pair[1].time_s - pair[0].time_s)
+    });
+    speeds_m_s.fold(0.0, f64::max)
 }
 
 /// The flight of a family with a seed, on any of the airframes.
@@ -220,10 +222,15 @@ fn plan(family: &Family, seed: u64) -> Result<Plan, Box<dyn Error + Send + Sync>
     let preset = draw.one_of(&AirframePreset::ALL);
     let mut configuration = Configuration::for_airframe(&preset.airframe())?;
     configuration.reference.shaping = false;
-    let mut plan = plans(&configuration).swap_remove(0);
-    plan.configuration = configuration;
+    let mut plan = Plan {
+        row: Row::Unforeseen,
+        name: format!("{} {seed} {}", family.name, preset.name()),
+        configuration,
+        demand: Demand::Goal([0.0; 3]),
+        force_n: [0.0; 3],
+        duration_s: 0.0,
+    };
     (family.change)(&mut draw, &mut plan);
-    plan.name = format!("{} {seed}", family.name);
     Ok(plan)
 }
 
@@ -238,34 +245,40 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
     for family in FAMILIES.iter().filter(chosen) {
         let seeds: Vec<u64> =
             arguments.seed.map_or_else(|| (0..arguments.seeds).collect(), |seed| vec![seed]);
-        let flights: Vec<_> = seeds
+        let flights: Vec<Flight> = seeds
             .par_iter()
-            .map(|seed| {
-                let plan = plan(family, *seed)?;
-                let tracks = flown(&plan, &flyers).tracks;
-                if let Some(folder) = &arguments.csv {
-                    fs::create_dir_all(folder)?;
-                    for (flyer, track) in &tracks {
-                        fs::write(
-                            folder.join(format!("{}-{seed}-{}.csv", family.name, flyer.key())),
-                            track.csv(),
-                        )?;
-                    }
-                }
-                let of = |flyer: &Flyer| {
-                    let track = tracks.iter().find(|(one, _)| one == flyer);
-                    track.map_or([f64::INFINITY; FIGURES.len()], |(_, track)| figures(&plan, track))
-                };
-                Ok((plan.clone(), flyers.iter().map(of).collect::<Vec<_>>()))
-            })
-            .collect::<Result<_, Box<dyn Error + Send + Sync>>>()?;
+            .map(|seed| flight(plan(family, *seed)?, &flyers, arguments.csv.as_deref()))
+            .collect::<Result<_, _>>()?;
         print_family(family, &flyers, &flights);
         print_worst(&flights, &flyers, arguments.worst);
     }
     Ok(())
 }
 
-fn print_family(family: &Family, flyers: &[Flyer], flights: &[(Plan, Vec<[f64; FIGURES.len()]>)]) {
+/// What was flown, and the figures of each flyer.
+type Flight = (Plan, Vec<[f64; FIGURES.len()]>);
+
+/// Flies a plan with each flyer; a flight that was lost is infinitely bad.
+fn flight(
+    plan: Plan,
+    flyers: &[Flyer],
+    csv: Option<&std::path::Path>,
+) -> Result<Flight, Box<dyn Error + Send + Sync>> {
+    let mut all = Vec::new();
+    for flyer in flyers {
+        let Ok(track) = fly(&plan, *flyer) else {
+            all.push([f64::INFINITY; FIGURES.len()]);
+            continue;
+        };
+        if let Some(folder) = csv {
+            track.write_csv(folder, &plan.name, flyer.key())?;
+        }
+        all.push(figures(&plan, &track));
+    }
+    Ok((plan, all))
+}
+
+fn print_family(family: &Family, flyers: &[Flyer], flights: &[Flight]) {
     println!("\n{}: median, 90 %, worst of {}", family.name, flights.len());
     let header: String = flyers.iter().map(|flyer| format!("{:>30}", flyer.name())).collect();
     println!("{:14}{header}", "");
@@ -281,7 +294,7 @@ fn print_family(family: &Family, flyers: &[Flyer], flights: &[(Plan, Vec<[f64; F
 }
 
 /// Those in which the first flyer is furthest behind the best of the others.
-fn print_worst(flights: &[(Plan, Vec<[f64; FIGURES.len()]>)], flyers: &[Flyer], count: usize) {
+fn print_worst(flights: &[Flight], flyers: &[Flyer], count: usize) {
     if flyers.len() < 2 {
         return;
     }
@@ -292,16 +305,10 @@ fn print_worst(flights: &[(Plan, Vec<[f64; FIGURES.len()]>)], flyers: &[Flyer], 
     let mut order: Vec<_> = flights.iter().collect();
     order.sort_by(|one, other| behind(&other.1).total_cmp(&behind(&one.1)));
     for (plan, figures) in order.into_iter().take(count) {
-        println!("  {}: {:?} with {}", plan.name, plan.demand, airframe_name(plan));
+        println!("  {}: {:?}", plan.name, plan.demand);
         for (flyer, figures) in flyers.iter().zip(figures) {
             let cells: String = figures.iter().map(|value| format!("{value:10.3}")).collect();
             println!("    {:16}{cells}", flyer.name());
         }
     }
-}
-
-fn airframe_name(plan: &Plan) -> &'static str {
-    let weight = plan.configuration.airframe.weight_n();
-    let near = |preset: &&AirframePreset| (preset.airframe().weight_n() - weight).abs() < 1e-9;
-    AirframePreset::ALL.iter().find(near).map_or("another airframe", |preset| preset.name())
 }

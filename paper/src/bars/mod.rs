@@ -26,10 +26,12 @@ mod taylor;
 mod track;
 
 pub use figure::{EXCESS, SETTLED, SQUARED_DISTANCE};
+pub use flight::{Lost, fly};
 pub use flyer::Flyer;
+pub use measures::{largest, rms};
 pub use optimum::{Optimum, OptimumResult};
 pub use path::{Path, Shape};
-pub use plan::{Demand, Plan};
+pub use plan::{Demand, Plan, Row};
 pub use plans::plans;
 pub use random::judged as judged_random_flights;
 pub use result::{BarResult, flown};

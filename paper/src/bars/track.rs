@@ -1,5 +1,8 @@
 //! What a flight looked like.
 
+use std::path::Path;
+use std::{fs, io};
+
 use nalgebra::Vector3;
 use quadrotor::{PlantState, Wrench};
 
@@ -62,6 +65,16 @@ pub struct Track {
 }
 
 impl Track {
+    /// Writes the flight of a flyer to a file in a folder, which is made where there is none, as [`Self::csv`] has it.
+    ///
+    /// # Errors
+    /// Of the file system.
+    pub fn write_csv(&self, folder: &Path, flight: &str, flyer: &str) -> io::Result<()> {
+        let flight = flight.replace(|c: char| !c.is_ascii_alphanumeric() && c != '.', "-");
+        fs::create_dir_all(folder)?;
+        fs::write(folder.join(format!("{flight}-{flyer}.csv")), self.csv())
+    }
+
     /// Its columns as comma-separated values with a header.
     pub fn csv(&self) -> String {
         let mut text = "time,north,east,down,v_north,v_east,v_down,phi,theta,psi,p,q,r,thrust,\

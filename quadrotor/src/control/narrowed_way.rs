@@ -231,6 +231,17 @@ mod tests {
         known_motion::circle(4.0, rate_rad_s, 1e-6 * time_us as f64)
     }
 
+    /// North and south at 1 rad/s, and up and down at another rate, each of a size, m.
+    fn bobbing(north_m: f64, (down_m, rate_rad_s): (f64, f64), time_us: u64) -> PositionReference {
+        known_motion::motion(|order| {
+            let along = |size_m: f64, rate_rad_s: f64| {
+                let angle = rate_rad_s * 1e-6 * time_us as f64 + f64::from(order) * FRAC_PI_2;
+                size_m * rate_rad_s.powi(order) * libm::cos(angle)
+            };
+            Vector3::new(along(north_m, 1.0), 0.0, along(down_m, rate_rad_s))
+        })
+    }
+
     /// The ways beside a circle.
     fn ways(configuration: &Configuration, rate_rad_s: f64, steps: u64) -> Vec<PositionReference> {
         let mut way = NarrowedWay::default();
@@ -306,14 +317,7 @@ mod tests {
             let mut largest_m_s2 = 0.0_f64;
             for step in 0..40_000 {
                 let time_us = step * STEP_US;
-                let along = |size_m: f64, rate_rad_s: f64, order: u8| {
-                    let angle = rate_rad_s * 1e-6 * time_us as f64 + f64::from(order) * FRAC_PI_2;
-                    size_m * rate_rad_s.powi(i32::from(order)) * libm::cos(angle)
-                };
-                let reference = known_motion::motion(|order| {
-                    let order = u8::try_from(order).unwrap();
-                    Vector3::new(along(north_m, 1.0, order), 0.0, along(0.1, 6.0, order))
-                });
+                let reference = bobbing(north_m, (0.1, 6.0), time_us);
                 let followed =
                     way.follow(&configuration, AVAILABLE_RAD_S2, &reference, time_us).unwrap_or(reference);
                 if step >= 20_000 {
@@ -333,19 +337,11 @@ mod tests {
     #[test]
     fn the_vertical_motion_is_narrowed_by_itself() {
         let configuration = Configuration::default();
-        let line = |time_us: u64| {
-            known_motion::motion(|order| {
-                let along = |size_m: f64, rate_rad_s: f64| {
-                    let angle = rate_rad_s * 1e-6 * time_us as f64 + f64::from(order) * FRAC_PI_2;
-                    size_m * rate_rad_s.powi(order) * libm::cos(angle)
-                };
-                Vector3::new(along(4.0, 1.0), 0.0, along(1.0, 4.0))
-            })
-        };
         let mut way = NarrowedWay::default();
         let (mut down_m_s2, mut up_m_s2, mut aside_m) = (0.0_f64, 0.0_f64, 0.0_f64);
         for step in 0..60_000 {
-            let (time_us, reference) = (step * STEP_US, line(step * STEP_US));
+            let time_us = step * STEP_US;
+            let reference = bobbing(4.0, (1.0, 4.0), time_us);
             let followed =
                 way.follow(&configuration, AVAILABLE_RAD_S2, &reference, time_us).unwrap_or(reference);
             if step > 40_000 {

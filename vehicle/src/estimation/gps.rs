@@ -69,6 +69,21 @@ pub struct GpsFix {
 }
 
 impl GpsFix {
+    /// Of a receiver that stands at the origin and errs as usual.
+    #[cfg(test)]
+    pub(super) fn still() -> Self {
+        Self {
+            time_us: 0,
+            position_m: Vector3::zeros(),
+            velocity_m_s: Vector3::zeros(),
+            horizontal_accuracy_m: 2.0,
+            vertical_accuracy_m: 3.0,
+            velocity_accuracy_m_s: 0.05,
+            climb_accuracy_m_s: 0.05,
+            satellites: 12,
+        }
+    }
+
     /// A fix without errors.
     pub fn exact(motion: &TrueMotion) -> Self {
         Self {

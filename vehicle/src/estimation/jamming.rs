@@ -63,8 +63,6 @@ impl Jamming {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector3;
-
     use super::Jamming;
     use crate::estimation::gps::GpsFix;
     use crate::estimation::noise::{Channel, Noise};
@@ -72,16 +70,7 @@ mod tests {
     #[test]
     fn it_is_silent_first_and_lies_then() {
         let (mut jamming, mut noise) = (Jamming::default(), Noise::new(1, Channel::Error));
-        let exact = GpsFix {
-            time_us: 0,
-            position_m: Vector3::zeros(),
-            velocity_m_s: Vector3::zeros(),
-            horizontal_accuracy_m: 2.0,
-            vertical_accuracy_m: 3.0,
-            velocity_accuracy_m_s: 0.05,
-            climb_accuracy_m_s: 0.05,
-            satellites: 12,
-        };
+        let exact = GpsFix::still();
         let mut fixes = Vec::new();
         for tick in 0..200 {
             let fix = GpsFix { time_us: 10_000_000 + tick * 100_000, ..exact };

@@ -66,7 +66,7 @@ fn usual_change_m(fix: &GpsFix, gap_us: u64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{Vector2, Vector3};
+    use nalgebra::Vector2;
 
     use super::super::gps::GpsFix;
     use super::LeapWatch;
@@ -74,16 +74,7 @@ mod tests {
     /// After how many seconds a leap is followed, if the fixes, ten per second, are so far off, m.
     fn seconds_to_leap(off_m: impl Fn(u32) -> f64) -> Option<f64> {
         let mut watch = LeapWatch::default();
-        let fix = |n: u32| GpsFix {
-            time_us: u64::from(n) * 100_000,
-            position_m: Vector3::zeros(),
-            velocity_m_s: Vector3::zeros(),
-            horizontal_accuracy_m: 2.0,
-            vertical_accuracy_m: 3.0,
-            velocity_accuracy_m_s: 0.05,
-            climb_accuracy_m_s: 0.05,
-            satellites: 12,
-        };
+        let fix = |n: u32| GpsFix { time_us: u64::from(n) * 100_000, ..GpsFix::still() };
         (0..200).find(|n| watch.update(&fix(*n), Vector2::new(off_m(*n), 1.0))).map(|n| f64::from(n) / 10.0)
     }
 

@@ -47,13 +47,8 @@ mod tests {
         let mut lockout = Lockout::default();
         let fix = |n: u32| GpsFix {
             time_us: u64::from(n) * 100_000,
-            position_m: Vector3::zeros(),
             velocity_m_s: Vector3::new(velocity(n), 0.0, 0.0),
-            horizontal_accuracy_m: 2.0,
-            vertical_accuracy_m: 3.0,
-            velocity_accuracy_m_s: 0.05,
-            climb_accuracy_m_s: 0.05,
-            satellites: 12,
+            ..GpsFix::still()
         };
         (0..100).find(|n| lockout.update(&fix(*n), fitted(*n))).map(|n| f64::from(n) / 10.0)
     }

@@ -88,6 +88,11 @@ impl Fence<'_> {
         self.inclusions.forbid(outside).then_some(Breach::Outside)
     }
 
+    /// What forbids a place, NED, m, or the straight way to it.
+    pub fn breach_on_way(&self, from_m: &Vector3<f64>, to_m: &Vector3<f64>) -> Option<Breach> {
+        self.breach(to_m).or_else(|| self.breach_between(from_m, to_m))
+    }
+
     /// The area to stay out of that the straight way between two places, NED, m, leads through. One that it begins in does not
     /// count: it has to be left anyway.
     pub fn breach_between(&self, from_m: &Vector3<f64>, to_m: &Vector3<f64>) -> Option<Breach> {

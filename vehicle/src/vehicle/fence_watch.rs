@@ -199,7 +199,7 @@ pub(super) fn breach_ahead(situation: &Situation, limits: &Limits) -> Option<Bre
         let to_m = from_m + way.cap_magnitude(left_m);
         left_m -= (to_m - from_m).norm();
         let fence = situation.fence()?;
-        let breach = fence.breach(&to_m).or_else(|| fence.breach_between(&from_m, &to_m));
+        let breach = fence.breach_on_way(&from_m, &to_m);
         from_m = to_m;
         breach
     })

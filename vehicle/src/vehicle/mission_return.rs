@@ -39,10 +39,10 @@ impl MissionReturn {
             |leg: &PlannedLeg| matches!(mission.program().navigate(leg.item), Some(Navigate::Land { .. }));
         let current = mission.current();
         // Whichever passes fewer items.
-        let landing = legs.iter().position(lands).filter(|index| {
-            let landing = legs.get(*index).map_or(0, |leg| leg.item);
-            goal == ReturnGoal::Mission || landing.saturating_sub(current) < current
-        });
+        let is_taken =
+            |leg: &PlannedLeg| goal == ReturnGoal::Mission || leg.item.saturating_sub(current) < current;
+        let landing = legs.iter().enumerate().find(|(_, leg)| lands(leg));
+        let landing = landing.filter(|(_, leg)| is_taken(leg)).map(|(index, _)| index);
         let flown = legs.iter().position(|leg| leg.item >= current).filter(|_| from_mission);
         let way = match landing {
             Some(landing) => on(&legs, flown, landing, situation),
@@ -57,7 +57,7 @@ impl MissionReturn {
         let mut before_m = situation.outputs.position_m;
         self.places_m.iter().all(|place_m| {
             let from_m = std::mem::replace(&mut before_m, *place_m);
-            fence.breach(place_m).or_else(|| fence.breach_between(&from_m, place_m)).is_none()
+            fence.breach_on_way(&from_m, place_m).is_none()
         })
     }
 }

@@ -311,7 +311,6 @@ impl<'a> Situation<'a> {
 
     /// What of the fence forbids a place or the straight way to it.
     pub fn breach_to(&self, place_m: &Vector3<f64>) -> Option<Breach> {
-        let fence = self.fence()?;
-        fence.breach(place_m).or_else(|| fence.breach_between(&self.outputs.position_m, place_m))
+        self.fence()?.breach_on_way(&self.outputs.position_m, place_m)
     }
 }

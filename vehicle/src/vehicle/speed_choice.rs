@@ -73,6 +73,7 @@ mod tests {
             assert_eq!(choice.takeoff_m_s, expected, "{identity:?} {mode:?} {takes_off} {height_m}");
         }
     }
+
     /// ArduPilot: LOIT_SPEED_MS, PILOT_SPD_UP and PILOT_SPD_DN are the pilot's; a way across, a mission and Guided have WP_SPD.
     #[test]
     fn ardupilots_pilot_has_speeds_of_its_own() {

@@ -1,6 +1,7 @@
 //! A log in DataFlash.
 
 use autopilot::Autopilot;
+use autopilot::service::version;
 use vehicle::parameters::Value;
 use vehicle::{Severity, Vehicle};
 
@@ -17,13 +18,6 @@ const INTRODUCTION: &str =
     concat!("lmpc-sitl ", env!("CARGO_PKG_VERSION"), " with conventions of ArduCopter");
 /// Size of a block in the statistics of the log, bytes: nothing is written in blocks here.
 const NO_BLOCKS: f64 = 0.0;
-
-/// The numbers of this program's version, major first.
-fn version() -> [u8; 3] {
-    let numbers =
-        [env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR"), env!("CARGO_PKG_VERSION_PATCH")];
-    numbers.map(|number| number.parse().unwrap_or(0))
-}
 
 /// Writes messages as they are due, and happenings.
 #[derive(Debug)]
@@ -66,7 +60,8 @@ impl LogWriter for DataFlashWriter {
         for (number, _, _, _, units, multipliers) in &formats {
             bytes::format_units(&mut all, time_us, *number, units, multipliers);
         }
-        bytes::version(&mut all, time_us, INTRODUCTION, version());
+        let [major, minor, patch, _] = version().to_be_bytes();
+        bytes::version(&mut all, time_us, INTRODUCTION, [major, minor, patch]);
         bytes::message(&mut all, time_us, INTRODUCTION);
         let defaults = autopilot.initial_parameters().iter();
         let named = autopilot.parameter_table().entries().iter().zip(defaults);

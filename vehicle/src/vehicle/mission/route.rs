@@ -187,7 +187,7 @@ impl<'a> Route<'a> {
         };
         (0..PARTS).all(|part| {
             let (from_m, to_m) = (point(part), point(part + 1));
-            fence.breach(&to_m).or_else(|| fence.breach_between(&from_m, &to_m)).is_none()
+            fence.breach_on_way(&from_m, &to_m).is_none()
         })
     }
 
