@@ -15,7 +15,7 @@ use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
 use clap::Parser;
 use nalgebra::Vector3;
-use paper::bars::{Demand, Flyer, Moment, Path, Plan, Row, Shape, Track, fly, largest, rms};
+use paper::bars::{Demand, Flyer, Moment, Path, Plan, Points, Row, Shape, Track, fly, largest, rms};
 use quadrotor::{AirframePreset, Configuration};
 use rayon::prelude::*;
 
@@ -84,7 +84,7 @@ struct Family {
     change: fn(&mut Draw, &mut Plan),
 }
 
-const FAMILIES: [Family; 12] = [
+const FAMILIES: [Family; 13] = [
     Family { name: "goal", change: goal },
     Family { name: "wind", change: wind },
     Family { name: "low-tilt", change: low_tilt },
@@ -94,6 +94,7 @@ const FAMILIES: [Family; 12] = [
     Family { name: "upright", change: |draw, plan| path(draw, plan, (0.5, 6.0), (0.5, 2.5), &CLIMBING) },
     Family { name: "small", change: |draw, plan| path(draw, plan, (0.1, 1.0), (1.5, 4.5), &ALL) },
     Family { name: "points", change: points },
+    Family { name: "rounded", change: rounded },
     Family { name: "jumps", change: jumps },
     Family { name: "to-and-fro", change: to_and_fro },
     Family { name: "tilted-start", change: tilted_start },
@@ -149,7 +150,17 @@ fn points(draw: &mut Draw, plan: &mut Plan) {
     path(draw, plan, (0.5, 6.0), (0.3, 1.5), &ALL);
     let Demand::Path(path) = plan.demand else { return };
     let derivatives = draw.one_of(&[0, 1, 2]);
-    plan.demand = Demand::Points(path, derivatives, draw.one_of(&[0.02, 0.05, 0.1]));
+    let each_s = draw.one_of(&[0.02, 0.05, 0.1]);
+    plan.demand = Demand::Points(Points { path, derivatives, each_s, rounded_to: 0.0 });
+}
+
+/// Positions that are rounded to 0.1 mm to 1 cm.
+fn rounded(draw: &mut Draw, plan: &mut Plan) {
+    path(draw, plan, (0.5, 6.0), (0.2, 1.0), &ALL);
+    let Demand::Path(path) = plan.demand else { return };
+    let derivatives = draw.one_of(&[0, 0, 1]);
+    let each_s = draw.one_of(&[0.02, 0.05, 0.1]);
+    plan.demand = Demand::Points(Points { path, derivatives, each_s, rounded_to: draw.scaled(1e-4, 1e-2) });
 }
 
 fn jumps(draw: &mut Draw, plan: &mut Plan) {

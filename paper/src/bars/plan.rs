@@ -56,12 +56,50 @@ pub enum Demand {
     Goal([f64; 3]),
     /// A trajectory with velocity and acceleration.
     Path(Path),
-    /// Points of a trajectory with so many of their derivatives, set each so often, s: with none, they are positions alone.
-    Points(Path, usize, f64),
+    /// Points of a trajectory.
+    Points(Points),
     /// Raw goals that change each second, this far away at most, m; then the origin.
     Jumps(f64),
     /// North and back at a speed, m/s, that is reversed each 5 s.
     ToAndFro(f64),
+}
+
+/// Points of a trajectory as somebody sets them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Points {
+    /// The trajectory.
+    pub path: Path,
+    /// How many derivatives are set with each; with none, they are positions alone.
+    pub derivatives: usize,
+    /// How often they are set, s.
+    pub each_s: f64,
+    /// To what all numbers are rounded, m, m/s …; 0 if they are exact.
+    pub rounded_to: f64,
+}
+
+impl Points {
+    /// The point that holds at a time.
+    fn reference(&self, time_s: f64) -> PositionReference {
+        // A time that rounding put just before an instant is that instant.
+        let set_s = (time_s / self.each_s + 1e-6).floor() * self.each_s;
+        let rounded = |value: f64| {
+            if self.rounded_to > 0.0 { (value / self.rounded_to).round() * self.rounded_to } else { value }
+        };
+        let given = |order: usize| {
+            if order <= self.derivatives {
+                self.path.derivative(set_s, order).map(rounded)
+            } else {
+                Vector3::zeros()
+            }
+        };
+        PositionReference {
+            velocity_m_s: given(1),
+            acceleration_m_s2: given(2),
+            jerk_m_s3: given(3),
+            snap_m_s4: given(4),
+            ..PositionReference::goal(given(0).into(), 0.0)
+        }
+    }
 }
 
 /// How many goals there are before the last one, the origin.
@@ -122,20 +160,7 @@ impl Plan {
         match self.demand {
             Demand::Goal(goal_m) => PositionReference::goal(goal_m, 0.0),
             Demand::Path(path) => path.reference(time_s),
-            Demand::Points(path, derivatives, each_s) => {
-                // A time that rounding put just before an instant is that instant.
-                let set_s = (time_s / each_s + 1e-6).floor() * each_s;
-                let given = |order: usize| {
-                    if order <= derivatives { path.derivative(set_s, order) } else { Vector3::zeros() }
-                };
-                PositionReference {
-                    velocity_m_s: given(1),
-                    acceleration_m_s2: given(2),
-                    jerk_m_s3: given(3),
-                    snap_m_s4: given(4),
-                    ..PositionReference::goal(given(0).into(), 0.0)
-                }
-            }
+            Demand::Points(points) => points.reference(time_s),
             Demand::Jumps(reach_m) => PositionReference::goal(jumping_goal_m(reach_m, time_s as usize), 0.0),
             Demand::ToAndFro(speed_m_s) => to_and_fro(speed_m_s, time_s),
         }
@@ -144,7 +169,7 @@ impl Plan {
     /// Where the vehicle should be at a time, NED, m.
     pub fn place_m(&self, time_s: f64) -> Vector3<f64> {
         match self.demand {
-            Demand::Points(path, ..) => path.derivative(time_s, 0),
+            Demand::Points(points) => points.path.derivative(time_s, 0),
             _ => self.reference(time_s).position_m,
         }
     }

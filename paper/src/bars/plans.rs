@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use quadrotor::{Airframe, Configuration, GRAVITY_M_S2, Limits, Sensors, commanded_tilt_rad};
 
 use super::path::{Path, START_S, Shape};
-use super::plan::{Demand, Plan, Row};
+use super::plan::{Demand, Plan, Points, Row};
 
 /// Raw goals: name, place in NED, m, and how long the flight is, s.
 const GOALS: [(&str, [f64; 3], f64); 11] = [
@@ -281,7 +281,8 @@ fn unforeseen(base: &Configuration) -> Vec<Plan> {
         let path = Path { shape, size_m, rate_rad_s };
         let name = format!("{}, positions at 10 Hz", path_name(&path));
         let whole = on_path(Row::Unforeseen, name, base, path);
-        plans.push(Plan { demand: Demand::Points(path, 0, 0.1), ..whole });
+        let points = Points { path, derivatives: 0, each_s: 0.1, rounded_to: 0.0 };
+        plans.push(Plan { demand: Demand::Points(points), ..whole });
     }
     for speed_m_s in REVERSED_M_S {
         let name = format!("{speed_m_s} m/s, reversed each 5 s");

@@ -3,6 +3,9 @@
 //! The signal is an input that somebody sets: each millisecond, or every so often, and then it is held. Only changes of the value
 //! count as samples, at the time of the change, so that a staircase is read by the instants at which it was set, whatever its
 //! period. A polynomial is fitted to the samples of the last 0.4 s, or to seven of them if they are farther apart.
+//!
+//! Noise makes derivatives from so short a time useless: the deviation of the third one falls with its power of 3.5. So noisy samples
+//! are remembered for longer, and a polynomial through all of them counts as long as it leaves no more than the noise.
 
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
@@ -12,11 +15,13 @@ use crate::guidance::signal_noise::SignalNoise;
 
 /// Samples are at least this far apart, µs.
 const SPACING_US: u64 = 40_000;
-/// The samples that count are not older than this, µs, or than so many periods of the signal.
+/// The samples that count without noise are not older than this, µs, or than so many periods of the signal.
 const WINDOW_US: u64 = 400_000;
 const PERIODS: u64 = 6;
-/// Room for all of them.
-pub(crate) const CAPACITY: usize = 12;
+/// So many samples are remembered.
+pub(crate) const CAPACITY: usize = 32;
+/// What a polynomial through more of them leaves may be so many times the variance of the noise.
+const AS_NOISE: f64 = 2.0;
 /// Signals that are set less often than this, µs, count as constant between two changes.
 const LONGEST_PERIOD_US: u64 = 300_000;
 /// A sample off the polynomial by more than this share of the largest recent change, and by so many standard deviations, begins
@@ -113,10 +118,11 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
         (self.held, self.since_us) = (*value, time_us);
         let elapsed_us = time_us.saturating_sub(last_us);
         let jumps = (value - last).norm() > fastest * (elapsed_us.max(SPACING_US) as f64 / 1e6);
-        let fit = if elapsed_us >= SPACING_US { self.fit(time_us) } else { None };
-        if let Some(fit) = &fit {
+        let recent = if elapsed_us >= SPACING_US { self.recent_fit(time_us) } else { None };
+        if let Some(fit) = &recent {
             self.noise.observe(fit.left);
         }
+        let fit = recent.map(|recent| self.longest_fit(recent, time_us));
         if jumps || fit.is_some_and(|fit| self.is_off(value, &fit)) {
             self.begin(value, time_us);
         } else if elapsed_us >= SPACING_US {
@@ -130,6 +136,11 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
         }
     }
 
+    /// How many samples are known of the motion.
+    pub(crate) fn samples(&self) -> usize {
+        self.count
+    }
+
     /// The derivatives at `time_us`: zero of a signal that is constant or has just begun.
     pub fn at(&self, time_us: u64) -> Derivatives<AXES> {
         self.fit(time_us).map_or(Derivatives::zero(), |fit| {
@@ -138,8 +149,40 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
         })
     }
 
+    /// The polynomial that counts.
     fn fit(&self, time_us: u64) -> Option<PolynomialFit<AXES>> {
-        PolynomialFit::new(self.used(), self.noise.variance(), time_us)
+        self.recent_fit(time_us).map(|recent| self.longest_fit(recent, time_us))
+    }
+
+    /// The polynomial through the recent samples.
+    fn recent_fit(&self, time_us: u64) -> Option<PolynomialFit<AXES>> {
+        PolynomialFit::new(self.newest(self.recent()), self.noise.variance(), time_us)
+    }
+
+    /// The one through the most samples, up to all, that leaves no more than the noise; or else that through the recent ones.
+    fn longest_fit(&self, recent: PolynomialFit<AXES>, time_us: u64) -> PolynomialFit<AXES> {
+        let variance = self.noise.variance();
+        let mut longest = recent;
+        for count in [(self.recent() + self.count) / 2, self.count] {
+            match PolynomialFit::new(self.newest(count), variance, time_us) {
+                Some(fit) if fit.left <= AS_NOISE * variance => longest = fit,
+                _ => break,
+            }
+        }
+        longest
+    }
+
+    /// How many samples count without noise.
+    fn recent(&self) -> usize {
+        let Some((last_us, _)) = self.used().last() else { return 0 };
+        let oldest_us = last_us.saturating_sub(WINDOW_US.max(PERIODS * self.period_us().unwrap_or(0)));
+        self.used().iter().filter(|(sample_us, _)| *sample_us >= oldest_us).count()
+    }
+
+    /// So many of the newest samples, or all.
+    fn newest(&self, count: usize) -> &[(u64, SVector<f64, AXES>)] {
+        let used = self.used();
+        used.get(used.len().saturating_sub(count)..).unwrap_or(used)
     }
 
     fn used(&self) -> &[(u64, SVector<f64, AXES>)] {
@@ -170,7 +213,7 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
             return false;
         }
         let largest = self
-            .used()
+            .newest(self.recent())
             .windows(2)
             .map(|pair| match pair {
                 [(_, before), (_, after)] => (after - before).norm(),
@@ -201,12 +244,10 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
     }
 
     fn push(&mut self, value: &SVector<f64, AXES>, time_us: u64) {
-        let period_us = self.used().last().map_or(0, |(last_us, _)| time_us.saturating_sub(*last_us));
-        let oldest_us = time_us.saturating_sub(WINDOW_US.max(PERIODS * period_us));
-        let full = usize::from(self.count == CAPACITY);
-        let old = self.used().iter().filter(|(sample_us, _)| *sample_us < oldest_us).count().max(full);
-        self.samples.rotate_left(old);
-        self.count -= old;
+        if self.count == CAPACITY {
+            self.samples.rotate_left(1);
+            self.count -= 1;
+        }
         if let Some(sample) = self.samples.get_mut(self.count) {
             *sample = (time_us, *value);
             self.count += 1;

@@ -4,6 +4,7 @@ use nalgebra::Vector1;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::wrapped;
+use crate::guidance::consistent_way::ConsistentWay;
 use crate::guidance::derivative_estimator::DerivativeEstimator;
 use crate::guidance::found_derivatives::FoundDerivatives;
 use crate::guidance::heading::Heading;
@@ -15,7 +16,7 @@ use crate::{Limits, PositionReference};
 const JUMP: f64 = 10.0;
 
 /// Position, velocity and acceleration as given, carried on while an input is held; the heading within its rate limit. Derivatives
-/// that are not given are estimated.
+/// that are not given are estimated, and made consistent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DirectReference {
     /// The way as it was sampled at `time_us`, and the heading at `yaw_time_us`.
@@ -26,6 +27,7 @@ pub struct DirectReference {
     plan: Option<ReferencePlan>,
     input: HeldInput,
     found: FoundDerivatives,
+    way: ConsistentWay,
     yaw_rates: DerivativeEstimator<1>,
 }
 
@@ -39,6 +41,7 @@ impl DirectReference {
             plan: None,
             input: HeldInput::new(time_us),
             found: FoundDerivatives::new(),
+            way: ConsistentWay::default(),
             yaw_rates: DerivativeEstimator::new(),
         }
     }
@@ -98,11 +101,17 @@ impl DirectReference {
         time_us: u64,
     ) {
         self.plan = plan.map(|plan| plan.near_heading(self.latest.yaw_rad, time_us));
-        let way = self.found.completed(reference, limits, self.input.since_us());
+        let point = self.found.completed(reference, limits, self.input.since_us());
         // The point holds at the instant at which it was set.
         let age_s = self.input.age_s(time_us);
-        let now = if age_s > 0.0 { way.after(age_s) } else { way };
-        self.latest = Heading::of(&self.latest).on(&now);
+        let now = if age_s > 0.0 { point.after(age_s) } else { point };
+        let way = if self.found.are_settled(reference) && !now.is_at_rest() {
+            self.way.beside(&now, limits, time_us)
+        } else {
+            self.way.forget();
+            now
+        };
+        self.latest = Heading::of(&self.latest).on(&way);
         self.time_us = time_us;
     }
 

@@ -9,6 +9,8 @@ use crate::{GRAVITY_M_S2, Limits, PositionReference};
 
 /// How many times the limits of tilt rate and tilt acceleration are taken for motion.
 const MOTION: f64 = 1.5;
+/// So many samples tell the derivatives of a motion well.
+const SETTLED: usize = 9;
 /// Multiple of the limits of jerk beyond which a change of the acceleration counts as a jump, not as motion.
 const JERK_JUMP: f64 = 10.0;
 /// The same of the limits of speed for a change of the position.
@@ -55,6 +57,12 @@ impl FoundDerivatives {
             let fastest = limits.speed_horizontal_m_s.max(limits.speed_up_m_s).max(limits.speed_down_m_s);
             self.positions.observe(&point.position_m, SPEED_JUMP * fastest, time_us);
         }
+    }
+
+    /// Whether the acceleration of a point is found from many samples. From a few it is only rough.
+    pub fn are_settled(&self, point: &PositionReference) -> bool {
+        let samples = self.positions.samples().max(self.velocities.samples());
+        !gives_all(point) && !is_given(&point.acceleration_m_s2) && samples >= SETTLED
     }
 
     /// A point that was set at `since_us` with the derivatives that it lacks, as far as they are known.

@@ -1,6 +1,7 @@
 //! From what the vehicle is asked for to the set-points that the controllers track.
 
 pub(crate) mod attitude_target;
+pub(crate) mod consistent_way;
 pub(crate) mod continuation;
 pub(crate) mod derivative_estimator;
 pub(crate) mod direct_reference;

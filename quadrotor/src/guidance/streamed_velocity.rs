@@ -26,6 +26,11 @@ impl StreamedVelocity {
         self.0.at(time_us)
     }
 
+    /// How many samples of its motion are known.
+    pub(crate) fn samples(&self) -> usize {
+        self.0.samples()
+    }
+
     /// Makes it a constant again.
     pub(crate) fn forget(&mut self) {
         self.0.forget();
