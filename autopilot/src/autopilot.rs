@@ -66,6 +66,7 @@ impl Autopilot {
             links: links.to_vec(),
             log_queue: LogQueue::default(),
             reboot_us: None,
+            rests: false,
         };
         context.parameters.statistics_mut().reset(unix_start_us / 1_000_000);
         services.start(&mut context);
@@ -99,6 +100,11 @@ impl Autopilot {
         self.services.announce(&mut self.context);
         self.services.stream(&mut self.context);
         Ok(())
+    }
+
+    #[cfg(test)]
+    pub(crate) fn context_mut(&mut self) -> &mut Context {
+        &mut self.context
     }
 
     /// Boots again: with its parameters, its plans and its clients' files, and nothing else.

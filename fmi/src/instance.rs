@@ -25,12 +25,20 @@ pub(crate) struct Instance<M: Model> {
     /// The run; its parameters are those of `settings`.
     model: Option<Box<M>>,
     /// Outputs at the current time, if they were requested.
-    pub(super) outputs: Option<M::Outputs>,
+    pub(super) observed: Option<Observed<M::Outputs>>,
     last_step_failed: bool,
     /// Held as long as the instance is there.
     _share: Box<dyn Any>,
     /// Whether the length of a step has been warned of.
     warned_of_step: bool,
+}
+
+/// Outputs at the current time.
+pub(super) struct Observed<O> {
+    /// Those that take long may be missing: NaN.
+    pub outputs: O,
+    /// Whether none is missing.
+    complete: bool,
 }
 
 impl<M: Model> Instance<M> {
@@ -44,7 +52,7 @@ impl<M: Model> Instance<M> {
             settings: SettingsOf::<M>::default(),
             derivatives: Vec::new(),
             model: None,
-            outputs: None,
+            observed: None,
             last_step_failed: false,
             _share: M::share(),
             warned_of_step: false,
@@ -118,7 +126,7 @@ impl<M: Model> Instance<M> {
         self.settings = SettingsOf::<M>::default();
         self.derivatives.clear();
         self.model = None;
-        self.outputs = None;
+        self.observed = None;
         (self.last_step_failed, self.warned_of_step) = (false, false);
         self.logger.event("reset");
         Ok(())
@@ -129,7 +137,7 @@ impl<M: Model> Instance<M> {
         let longest_s = M::IDENTITY.longest_step_s;
         let end =
             self.clock.step(point_s, step_s, longest_s).inspect_err(|_| self.last_step_failed = true)?;
-        self.outputs = None;
+        self.observed = None;
         let derivatives = std::mem::take(&mut self.derivatives);
         let model = built(&mut self.model, &self.settings)?;
         let step_us = end.time_us.saturating_sub(model.time_us());
@@ -150,7 +158,8 @@ impl<M: Model> Instance<M> {
             if model.is_sound() {
                 return Ok(());
             }
-            check_outputs::<M>(self.outputs.insert(model.outputs())).map_err(|error| error.to_string())
+            let observed = self.observed.insert(Observed { outputs: model.outputs(), complete: true });
+            check_outputs::<M>(&observed.outputs).map_err(|error| error.to_string())
         });
         match outcome {
             Ok(()) => {
@@ -204,7 +213,7 @@ impl<M: Model> Instance<M> {
         self.clock = snapshot.clock;
         self.settings.clone_from(&snapshot.settings);
         self.derivatives.clone_from(&snapshot.derivatives);
-        self.outputs = None;
+        self.observed = None;
         self.last_step_failed = false;
         Ok(())
     }
@@ -217,17 +226,17 @@ impl<M: Model> Instance<M> {
                 let model = built(&mut self.model, &self.settings)?;
                 retune(model, &self.settings.parameters, &settings.parameters)?;
                 let warnings = model.warnings();
-                self.outputs = None;
+                self.observed = None;
                 self.logger.event(M::IDENTITY.words.retuned);
                 let new = warnings.iter().filter(|warning| !known.contains(warning));
                 new.for_each(|warning| self.logger.warning(warning));
             }
             if self.kind == Kind::ModelExchange {
-                self.outputs = None;
+                self.observed = None;
             }
         } else {
             self.model = None;
-            self.outputs = None;
+            self.observed = None;
         }
         self.settings = settings;
         Ok(())
@@ -240,11 +249,28 @@ impl<M: Model> Instance<M> {
 
     /// The outputs at the present.
     pub(super) fn outputs(&mut self) -> Result<&M::Outputs, CallError> {
+        let (model, observed) = self.observe()?;
+        if !observed.complete {
+            model.complete(&mut observed.outputs);
+            observed.complete = true;
+        }
+        Ok(&observed.outputs)
+    }
+
+    /// The same, of which those that take long may be missing, unless they have been asked for.
+    pub(super) fn prompt_outputs(&mut self) -> Result<&M::Outputs, CallError> {
+        Ok(&self.observe()?.1.outputs)
+    }
+
+    fn observe(&mut self) -> Result<(&M, &mut Observed<M::Outputs>), CallError> {
         let model = built(&mut self.model, &self.settings)?;
-        Ok(self.outputs.get_or_insert_with(|| match (self.kind, M::CONTINUOUS) {
-            (Kind::ModelExchange, Some(equations)) => equations.outputs(model, &self.settings.inputs),
-            _ => model.outputs(),
-        }))
+        let observed = self.observed.get_or_insert_with(|| match (self.kind, M::CONTINUOUS) {
+            (Kind::ModelExchange, Some(equations)) => {
+                Observed { outputs: equations.outputs(model, &self.settings.inputs), complete: true }
+            }
+            _ => Observed { outputs: model.prompt_outputs(), complete: false },
+        });
+        Ok((model, observed))
     }
 
     /// The run and its inputs.
@@ -254,7 +280,7 @@ impl<M: Model> Instance<M> {
 
     /// Outputs are calculated again when they are asked for.
     pub(super) fn forget_outputs(&mut self) {
-        self.outputs = None;
+        self.observed = None;
     }
 }
 

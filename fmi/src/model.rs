@@ -113,6 +113,15 @@ pub trait Model: Sized + 'static {
     /// The outputs at the current time. An output that is not finite ends the run.
     fn outputs(&self) -> Self::Outputs;
 
+    /// The same, of which real numbers that take long may be NaN, until [`Model::complete`] has calculated them: that happens when one of
+    /// them is read.
+    fn prompt_outputs(&self) -> Self::Outputs {
+        self.outputs()
+    }
+
+    /// Completes what [`Model::prompt_outputs`] has left out, at the same time.
+    fn complete(&self, _outputs: &mut Self::Outputs) {}
+
     /// Whether all outputs are finite, if the model can tell faster than by checking the variables one by one, which happens after
     /// `false`.
     fn are_finite(_outputs: &Self::Outputs) -> bool {

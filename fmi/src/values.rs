@@ -27,12 +27,16 @@ impl<M: Model> Instance<M> {
             let Some(variable) = found::<M>(reference) else {
                 return Err(CallError::UnknownReference { reference });
             };
-            // Mostly several real outputs are read, and from the second one on they are there.
-            if let Role::Output { signal: Signal::Real { get, .. }, .. } = &variable.role
-                && let Some(number) = self.outputs.as_ref().map(get).filter(|number| number.is_finite())
-            {
-                put(place, Value::Real(number));
-                continue;
+            // Mostly several real outputs are read, and from the second one on they are there. One that is missing is not finite.
+            if let Role::Output { signal: Signal::Real { get, .. }, .. } = &variable.role {
+                let number = match &self.observed {
+                    Some(observed) => get(&observed.outputs),
+                    None => get(self.prompt_outputs()?),
+                };
+                if number.is_finite() {
+                    put(place, Value::Real(number));
+                    continue;
+                }
             }
             put(place, self.value(reference, variable)?);
         }

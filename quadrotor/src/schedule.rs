@@ -20,11 +20,12 @@ pub(crate) fn next_point_us(
     plant: &Plant,
     (state, inputs): (&PlantState, &PlantInputs),
 ) -> u64 {
-    if plant.is_calm(state, inputs) {
-        (time_us / LONG_STEP_US + 1) * LONG_STEP_US
-    } else {
-        next_look_us(time_us)
-    }
+    point_after_us(time_us, plant.is_calm(state, inputs))
+}
+
+/// The same for a plant that is known to be calm or not.
+pub(crate) fn point_after_us(time_us: u64, is_calm: bool) -> u64 {
+    if is_calm { (time_us / LONG_STEP_US + 1) * LONG_STEP_US } else { next_look_us(time_us) }
 }
 
 #[cfg(test)]

@@ -3,20 +3,38 @@
 use crate::attitude::wrapped;
 use crate::configuration::validation::validate_start_over;
 use crate::design::prepared_design::PreparedDesign;
-use crate::schedule::next_point_us;
+use crate::plant::dynamics::BegunStep;
+use crate::schedule::point_after_us;
 use crate::sensors::SimulatedSensors;
 use crate::simulation_state::{SimulationState, World};
 use crate::{
     CascadeDesign, Configuration, ConfigurationError, ControlLaw, ControlLoop, InputSignal, Inputs, Outputs,
-    Plant, PlantInputs, PlantState, RigidBody, Sensors, SimulationError,
+    Plant, PlantInputs, PlantState, PositionReference, RigidBody, Sensors, SimulationError,
 };
 
 /// A flight: plant, sensors and control loop on one schedule.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Simulation {
     plant: Plant,
     control: ControlLoop,
     world: World,
+    /// How the plant goes on, if the flight rests between two events.
+    course: Option<Course>,
+}
+
+/// How the plant goes on from the last event, which is looked at again until the next one. It follows from the rest.
+#[derive(Clone, Copy, Debug)]
+struct Course {
+    /// Where a step ends that nothing shortens, µs.
+    point_us: u64,
+    is_calm: bool,
+    begun: BegunStep,
+}
+
+impl PartialEq for Simulation {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.plant, &self.control, &self.world) == (&other.plant, &other.control, &other.world)
+    }
 }
 
 impl Simulation {
@@ -80,7 +98,8 @@ impl Simulation {
 
     fn of(control: ControlLoop, world: World) -> Self {
         let configuration = control.configuration();
-        Self { plant: Plant::new(&configuration.airframe, &configuration.environment), control, world }
+        let plant = Plant::new(&configuration.airframe, &configuration.environment);
+        Self { plant, control, world, course: None }
     }
 
     /// The configuration.
@@ -110,7 +129,7 @@ impl Simulation {
     pub fn restore(&mut self, state: SimulationState) -> Result<(), ConfigurationError> {
         state.check(self.configuration(), &self.plant)?;
         self.control.restore(state.control)?;
-        self.world = state.world;
+        (self.world, self.course) = (state.world, None);
         Ok(())
     }
 
@@ -123,7 +142,8 @@ impl Simulation {
     /// where it has been looked at, and on a long step, which only a calm plant takes.
     pub fn is_sound(&self) -> bool {
         let World { time_us, event_us, plant, .. } = &self.world;
-        time_us == event_us || self.plant.is_calm(plant, &self.plant_inputs())
+        let is_calm = || self.plant.is_calm(plant, &self.plant_inputs());
+        time_us == event_us || self.course.as_ref().map_or_else(is_calm, |course| course.is_calm)
     }
 
     /// Changes parameters during the flight, those of the airframe included: a payload is dropped by a change of its mass.
@@ -142,7 +162,7 @@ impl Simulation {
             self.world.plant = self.plant_at(self.world.time_us);
             self.world.event_us = self.world.time_us;
         }
-        self.plant = plant;
+        (self.plant, self.course) = (plant, None);
         self.control.hand_over(prepared);
         Ok(())
     }
@@ -201,7 +221,7 @@ impl Simulation {
             inputs.with(event_us, |inputs| self.sample(inputs))?;
             *are_known = inputs.is_constant();
         }
-        let point_us = next_point_us(event_us, &self.plant, (&self.world.plant, &self.plant_inputs()));
+        let point_us = self.point_us(time_us);
         let end_us = point_us.min(time_us);
         loop {
             let look_us = self.control.next_sample_us();
@@ -217,6 +237,21 @@ impl Simulation {
             }
             *are_known = inputs.is_constant();
         }
+    }
+
+    /// Where a step of the plant from the last event ends that nothing shortens, µs. If that is later than `time_us`, how the plant goes on
+    /// is kept until the next event.
+    fn point_us(&mut self, time_us: u64) -> u64 {
+        if let Some(course) = &self.course {
+            return course.point_us;
+        }
+        let (inputs, World { event_us, plant, .. }) = (self.plant_inputs(), &self.world);
+        let is_calm = self.plant.is_calm(plant, &inputs);
+        let point_us = point_after_us(*event_us, is_calm);
+        if point_us > time_us {
+            self.course = Some(Course { point_us, is_calm, begun: self.plant.begin_step(plant, &inputs) });
+        }
+        point_us
     }
 
     /// Looks at inputs between two events; whether that is all there is to do, because they do not change what acts on the plant.
@@ -239,7 +274,7 @@ impl Simulation {
             let overload = self.world.overload(&self.configuration().airframe);
             return Err(SimulationError::Diverged { time_us: next_us, overload });
         }
-        self.world.plant = plant;
+        (self.world.plant, self.course) = (plant, None);
         self.world.event_us = next_us;
         self.world.time_us = next_us;
         Ok(())
@@ -298,14 +333,31 @@ impl Simulation {
             return Err(SimulationError::Diverged { time_us, overload: None });
         }
         (self.world.event_us, self.world.time_us, self.world.plant) = (time_us, time_us, state);
+        self.course = None;
         Ok(())
     }
 
     /// What can be observed now.
     pub fn outputs(&self) -> Outputs {
+        self.observed(self.control.state().reference(self.world.time_us))
+    }
+
+    /// The same without the set-point, which takes long and is seldom wanted: it and the errors are NaN until they are
+    /// [completed](Simulation::complete).
+    pub fn prompt_outputs(&self) -> Outputs {
+        self.observed(PositionReference::UNKNOWN)
+    }
+
+    /// Adds set-point and errors to what was observed now without them.
+    pub fn complete(&self, outputs: &mut Outputs) {
+        outputs.setpoint = self.control.state().reference(self.world.time_us);
+        outputs.tracking_error_m = outputs.position_m - outputs.setpoint.position_m;
+        outputs.yaw_error_rad = wrapped(outputs.attitude_rad.z - outputs.setpoint.yaw_rad);
+    }
+
+    fn observed(&self, setpoint: PositionReference) -> Outputs {
         let (control, time_us) = (self.control.state(), self.world.time_us);
         let plant = self.plant.outputs(&self.plant_at(time_us), &self.plant_inputs());
-        let setpoint = control.reference(time_us);
         Outputs {
             time_us,
             position_m: plant.position_m,
@@ -348,14 +400,19 @@ impl Simulation {
         if time_us == *event_us {
             return *plant;
         }
-        let h_s = (time_us - event_us) as f64 / 1e6;
-        self.plant.step(plant, &self.plant_inputs(), h_s)
+        let (inputs, h_s) = (self.plant_inputs(), (time_us - event_us) as f64 / 1e6);
+        match &self.course {
+            Some(course) => self.plant.end_step(&course.begun, &inputs, h_s),
+            None => self.plant.step(plant, &inputs, h_s),
+        }
     }
 
     /// Samples the inputs and the control loop at the last event.
     fn sample(&mut self, inputs: &Inputs) -> Result<(), SimulationError> {
         let event_us = self.world.event_us;
         inputs.check(event_us)?;
+        // Something else may act on the plant from now on.
+        self.course = None;
         if inputs.keep_to_a_shaped_reference() && self.control.waits(event_us) {
             self.world.take(inputs);
             return Ok(());

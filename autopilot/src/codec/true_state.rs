@@ -4,14 +4,13 @@ use mavlink::dialects::ardupilotmega::{HIL_STATE_QUATERNION_DATA, MavMessage};
 use nalgebra::Vector3;
 use quadrotor::GRAVITY_M_S2;
 use vehicle::estimation::TrueMotion;
-use vehicle::world::LocalFrame;
+use vehicle::world::Geodetic;
 
 use super::{centimetres_per_second, floats, millimetres, scaled_degrees};
 
-/// HIL_STATE_QUATERNION: the true motion in a wind, NED, m/s. Its acceleration is along the body's axes, in thousandths of the standard
+/// HIL_STATE_QUATERNION: the true motion at a place in a wind, NED, m/s. Its acceleration is along the body's axes, in thousandths of the standard
 /// gravity, as Gazebo reports it.
-pub fn hil_state_quaternion(motion: &TrueMotion, frame: &LocalFrame, wind_m_s: &Vector3<f64>) -> MavMessage {
-    let place = frame.to_geodetic(&motion.position_m);
+pub fn hil_state_quaternion(motion: &TrueMotion, place: &Geodetic, wind_m_s: &Vector3<f64>) -> MavMessage {
     let q = motion.attitude;
     let gravity = q.inverse_transform_vector(&Vector3::new(0.0, 0.0, GRAVITY_M_S2));
     let acceleration_mg = (motion.specific_force_m_s2 + gravity) * (1e3 / GRAVITY_M_S2);
@@ -48,7 +47,7 @@ mod tests {
     use nalgebra::{UnitQuaternion, Vector3};
     use quadrotor::GRAVITY_M_S2;
     use vehicle::estimation::TrueMotion;
-    use vehicle::world::{Geodetic, LocalFrame};
+    use vehicle::world::Geodetic;
 
     use super::hil_state_quaternion;
 
@@ -64,7 +63,7 @@ mod tests {
             specific_force_m_s2: Vector3::new(0.0, -0.1, -1.0) * GRAVITY_M_S2,
         };
         let origin = Geodetic { latitude_deg: 47.0, longitude_deg: 8.0, altitude_m: 400.0 };
-        let told = hil_state_quaternion(&motion, &LocalFrame::new(origin), &Vector3::new(0.0, 0.0, 400.0));
+        let told = hil_state_quaternion(&motion, &origin, &Vector3::new(0.0, 0.0, 400.0));
         let MavMessage::HIL_STATE_QUATERNION(told) = told else { panic!("{told:?}") };
         assert_eq!([told.xacc, told.yacc, told.zacc], [0, -100, 0]);
         assert_eq!([told.vx, told.vy, told.vz], [100, -200, i16::MAX]);

@@ -129,7 +129,7 @@ fn of_now(vehicle: &Vehicle) -> MavMessage {
 fn message(vehicle: &Vehicle, extremes: &Extremes) -> MavMessage {
     let outputs = vehicle.outputs();
     let reference = &outputs.setpoint;
-    let place = vehicle.frame().to_geodetic(&outputs.position_m);
+    let place = vehicle.place_of(&outputs.position_m);
     let altitude_m = |down_m: f64| (vehicle.frame().origin().altitude_m - down_m).round() as i16;
     let leg = vehicle.leg_errors().filter(|_| vehicle.mode() == Mode::Mission);
     let target_m = leg.map_or(reference.position_m, |(target_m, _)| target_m);

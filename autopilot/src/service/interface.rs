@@ -57,7 +57,7 @@ pub type Outcome = Result<Progress, Refusal>;
 
 /// A MAVLink microservice: it claims messages, commands and streams, and owns what it remembers. It reaches the vehicle and the
 /// clients through the [`Context`] of each call. Every method has a default that does nothing, so a service implements only what it
-/// needs.
+/// needs; those that are called each tick say so ([`Context::rests`]), and are not called again.
 pub trait Service: Debug + Send {
     /// What it is for, in a few words: the table of compatibility in the book shows them beside everything that it claims. A service
     /// that claims something needs one.
@@ -118,21 +118,23 @@ pub trait Service: Debug + Send {
     }
 
     /// Called after each tick of the vehicle.
-    fn tick(&mut self, _context: &mut Context) {}
+    fn tick(&mut self, context: &mut Context) {
+        context.rests = true;
+    }
 
     /// Called after each tick and each received message: tells clients what has changed.
-    fn announce(&mut self, _context: &mut Context) {}
+    fn announce(&mut self, context: &mut Context) {
+        context.rests = true;
+    }
 
     /// Called at the end of each tick: sends what is due regularly.
-    fn stream(&mut self, _context: &mut Context) {}
+    fn stream(&mut self, context: &mut Context) {
+        context.rests = true;
+    }
 
     /// Goes on with long answers: sends as many messages as this service allows itself in `turns` turns, about 2500 of which make a
     /// second of the wall clock, to peers whose link has room (`None`: the peer is gone), one peer after the other.
-    fn transfer(
-        &mut self,
-        _context: &mut Context,
-        _turns: usize,
-        _has_room: &dyn Fn(PeerId) -> Option<bool>,
-    ) {
+    fn transfer(&mut self, context: &mut Context, _turns: usize, _has_room: &dyn Fn(PeerId) -> Option<bool>) {
+        context.rests = true;
     }
 }

@@ -81,7 +81,7 @@ fn request(command: &Command, vehicle: &Vehicle) -> Result<OrbitRequest, Refusal
 /// ORBIT_EXECUTION_STATUS, while an orbit is flown.
 fn status(vehicle: &Vehicle) -> Option<MavMessage> {
     let status = vehicle.orbit_status()?;
-    let place = vehicle.frame().to_geodetic(&status.centre_m);
+    let place = vehicle.place_of(&status.centre_m);
     Some(MavMessage::ORBIT_EXECUTION_STATUS(ORBIT_EXECUTION_STATUS_DATA {
         time_usec: vehicle.time_us(),
         radius: status.radius_m as f32,

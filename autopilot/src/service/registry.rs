@@ -79,6 +79,36 @@ pub struct Registry {
     /// Positions of services by numbers of commands.
     commands: BTreeMap<u16, (usize, Repetition)>,
     protocol: CommandProtocol,
+    /// Those whose turn comes with each tick, each change, each tick's end and each look at the links.
+    ticking: Rota,
+    announcing: Rota,
+    streaming: Rota,
+    transferring: Rota,
+}
+
+/// Positions of services that have something to do whenever they are called: few of all.
+#[derive(Debug)]
+struct Rota(Vec<usize>);
+
+impl Rota {
+    /// Calls each in its order. One that rests is not called again.
+    fn call(
+        &mut self,
+        services: &mut [Box<dyn Service>],
+        context: &mut Context,
+        mut call: impl FnMut(&mut dyn Service, &mut Context),
+    ) {
+        let mut place = 0;
+        while let Some(service) = self.0.get(place).and_then(|index| services.get_mut(*index)) {
+            context.rests = false;
+            call(service.as_mut(), context);
+            if context.rests {
+                self.0.remove(place);
+            } else {
+                place += 1;
+            }
+        }
+    }
 }
 
 impl Registry {
@@ -93,7 +123,20 @@ impl Registry {
             let entries = service.commands().iter();
             commands.extend(entries.map(|entry| (entry.number, (index, entry.repetition))));
         }
-        Self { services, messages, listeners, commands, protocol: CommandProtocol::default() }
+        let everyone = || Rota((0..services.len()).collect());
+        let (ticking, announcing, streaming, transferring) = (everyone(), everyone(), everyone(), everyone());
+        let protocol = CommandProtocol::default();
+        Self {
+            services,
+            messages,
+            listeners,
+            commands,
+            protocol,
+            ticking,
+            announcing,
+            streaming,
+            transferring,
+        }
     }
 
     /// The services, for what they claim.
@@ -167,17 +210,17 @@ impl Registry {
 
     /// A tick of simulation time is over.
     pub fn tick(&mut self, context: &mut Context) {
-        self.each(|service| service.tick(context));
+        self.ticking.call(&mut self.services, context, |service, context| service.tick(context));
     }
 
     /// Tells clients what has changed.
     pub fn announce(&mut self, context: &mut Context) {
-        self.each(|service| service.announce(context));
+        self.announcing.call(&mut self.services, context, |service, context| service.announce(context));
     }
 
     /// Sends what is due regularly.
     pub fn stream(&mut self, context: &mut Context) {
-        self.each(|service| service.stream(context));
+        self.streaming.call(&mut self.services, context, |service, context| service.stream(context));
     }
 
     /// Goes on with long answers.
@@ -187,7 +230,9 @@ impl Registry {
         turns: usize,
         has_room: &dyn Fn(PeerId) -> Option<bool>,
     ) {
-        self.each(|service| service.transfer(context, turns, has_room));
+        self.transferring.call(&mut self.services, context, |service, context| {
+            service.transfer(context, turns, has_room);
+        });
     }
 }
 
@@ -195,6 +240,8 @@ impl Registry {
 mod tests {
     use std::collections::BTreeSet;
     use std::fmt::Debug;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicU32, Ordering};
 
     use mavlink::Message as _;
 
@@ -203,9 +250,12 @@ mod tests {
 
     use vehicle::{Vehicle, VehicleSettings};
 
-    use super::{Registry, all};
+    use super::{Registry, Rota, all};
+    use crate::Autopilot;
     use crate::codec::id;
+    use crate::context::Context;
     use crate::parameters::Parameters;
+    use crate::service::Service;
     use crate::stream::{Build, Component};
 
     fn assert_unique<T: Ord + Debug>(claims: impl Iterator<Item = T>) {
@@ -240,6 +290,35 @@ mod tests {
             assert!(sometimes || !messages.is_empty(), "{}", stream.id);
             assert!(messages.iter().all(|message| message.message_id() == stream.id), "{}", stream.id);
         }
+    }
+
+    /// Whoever does nothing is called once; whoever overrides a method is called each time, in the order of the list.
+    #[test]
+    fn only_services_that_have_something_to_do_are_called() {
+        #[derive(Debug)]
+        struct Counting(Arc<AtomicU32>);
+        impl Service for Counting {
+            fn tick(&mut self, _context: &mut Context) {
+                self.0.fetch_add(1, Ordering::Relaxed);
+            }
+        }
+        #[derive(Debug)]
+        struct Idle;
+        impl Service for Idle {}
+        let calls = Arc::new(AtomicU32::new(0));
+        let mut services: Vec<Box<dyn Service>> = vec![
+            Box::new(Idle),
+            Box::new(Counting(calls.clone())),
+            Box::new(Idle),
+            Box::new(Counting(calls.clone())),
+        ];
+        let mut rota = Rota((0..services.len()).collect());
+        let settings = VehicleSettings::new(Identity::Px4);
+        let mut autopilot = Autopilot::new(&settings, 1, Speed::Factor(1.0), &[], 0).expect("valid settings");
+        for _ in 0..3 {
+            rota.call(&mut services, autopilot.context_mut(), |service, context| service.tick(context));
+        }
+        assert_eq!((calls.load(Ordering::Relaxed), rota.0), (6, vec![1, 3]));
     }
 
     /// Commands have their own protocol: a service would never see these.

@@ -134,7 +134,7 @@ fn basic_id(component: &Component<'_>) -> Vec<MavMessage> {
 fn location(component: &Component<'_>) -> Vec<MavMessage> {
     let Some(vehicle) = enabled(component) else { return Vec::new() };
     let outputs = vehicle.outputs();
-    let place = vehicle.frame().to_geodetic(&outputs.position_m);
+    let place = vehicle.place_of(&outputs.position_m);
     let velocity_m_s = outputs.velocity_m_s;
     let course_rad = libm::atan2(velocity_m_s.y, velocity_m_s.x);
     let now_us = vehicle.unix_start_us() + vehicle.time_us();
@@ -179,7 +179,7 @@ fn system(component: &Component<'_>) -> Vec<MavMessage> {
     };
     let known = vehicle.remote_id().place.or_else(|| (!vehicle.identity().is_ardupilot()).then(own));
     let message = |known: OperatorPlace| {
-        let place = known.position_m.map(|position_m| vehicle.frame().to_geodetic(&position_m));
+        let place = known.position_m.map(|position_m| vehicle.place_of(&position_m));
         let [kind, category, class] = known.classification;
         MavMessage::OPEN_DRONE_ID_SYSTEM(OPEN_DRONE_ID_SYSTEM_DATA {
             operator_latitude: place.map_or(0, |place| scaled_degrees(place.latitude_deg)),

@@ -247,7 +247,7 @@ fn shorten(position_m: &mut Vector3<f64>, place: &Geodetic, vehicle: &Vehicle) {
     if (*position_m - here_m).xy().norm() <= REACH_M {
         return;
     }
-    let here = vehicle.frame().to_geodetic(&here_m);
+    let here = vehicle.place_of(&here_m);
     let middle_rad = ((here.latitude_deg + place.latitude_deg) / 2.0).to_radians();
     let north_deg = place.latitude_deg - here.latitude_deg;
     let east_deg = (place.longitude_deg - here.longitude_deg + 180.0).rem_euclid(360.0) - 180.0;

@@ -50,7 +50,7 @@ impl Service for Terrain {
 
 /// TERRAIN_REPORT of the ground below the vehicle.
 fn report(vehicle: &Vehicle) -> MavMessage {
-    let place = vehicle.frame().to_geodetic(&vehicle.outputs().position_m);
+    let place = vehicle.place_of(&vehicle.outputs().position_m);
     report_of(vehicle, [place.latitude_deg, place.longitude_deg].map(scaled_degrees))
 }
 

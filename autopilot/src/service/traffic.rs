@@ -126,7 +126,7 @@ fn heard(component: &Component<'_>) -> Vec<MavMessage> {
 }
 
 fn adsb_vehicle(vehicle: &Vehicle, aircraft: &Aircraft) -> MavMessage {
-    let place = vehicle.frame().to_geodetic(&aircraft.position_m);
+    let place = vehicle.place_of(&aircraft.position_m);
     let velocity_m_s = &aircraft.velocity_m_s;
     let heading_rad = libm::atan2(velocity_m_s.y, velocity_m_s.x);
     let mut flags = AdsbFlags::ADSB_FLAGS_VALID_COORDS

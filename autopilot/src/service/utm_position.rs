@@ -18,8 +18,8 @@ pub fn own(component: &Component<'_>) -> Vec<MavMessage> {
     type Flags = UtmDataAvailFlags;
     let vehicle = component.vehicle;
     let outputs = vehicle.outputs();
-    let place = vehicle.frame().to_geodetic(&outputs.position_m);
-    let next = next_m(vehicle).map(|next_m| vehicle.frame().to_geodetic(&next_m));
+    let place = vehicle.place_of(&outputs.position_m);
+    let next = next_m(vehicle).map(|next_m| vehicle.place_of(&next_m));
     let mut flags = Flags::UTM_DATA_AVAIL_FLAGS_TIME_VALID
         | Flags::UTM_DATA_AVAIL_FLAGS_UAS_ID_AVAILABLE
         | Flags::UTM_DATA_AVAIL_FLAGS_POSITION_AVAILABLE

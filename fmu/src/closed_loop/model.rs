@@ -101,6 +101,14 @@ impl Model for ClosedLoop {
         self.0.outputs()
     }
 
+    fn prompt_outputs(&self) -> Outputs {
+        self.0.prompt_outputs()
+    }
+
+    fn complete(&self, outputs: &mut Outputs) {
+        self.0.complete(outputs);
+    }
+
     fn are_finite(outputs: &Outputs) -> bool {
         outputs::are_finite(outputs)
     }
@@ -137,6 +145,21 @@ mod tests {
     use quadrotor::{Configuration, Inputs};
 
     use super::ClosedLoop;
+
+    /// Numbers that are missing are NaN, and those that are there are not touched.
+    #[test]
+    fn outputs_are_completed_later() {
+        let inputs = Inputs::default();
+        let mut model = ClosedLoop::new(&Configuration::default(), &inputs).expect("flies");
+        for time_us in [0, 700_000, 1_003_000] {
+            model.advance_under(time_us, &inputs).expect("the flight goes on");
+            let mut outputs = model.prompt_outputs();
+            assert!(outputs.setpoint.position_m.x.is_nan() && outputs.tracking_error_m.z.is_nan());
+            assert!(outputs.yaw_error_rad.is_nan() && outputs.position_m == model.outputs().position_m);
+            model.complete(&mut outputs);
+            assert_eq!(outputs, model.outputs());
+        }
+    }
 
     #[test]
     fn doubtful_parameters_are_warned_about_and_hopeless_ones_refused() {

@@ -19,6 +19,11 @@ pub struct Motion {
 const SIXTH: f64 = 1.0 / 6.0;
 
 impl Motion {
+    /// Whether it stays where it is, for ever.
+    pub fn rests(&self) -> bool {
+        self.velocity == 0.0 && self.acceleration == 0.0 && self.jerk == 0.0
+    }
+
     /// At rest.
     pub fn at(position: f64) -> Self {
         Self { position, ..Self::default() }

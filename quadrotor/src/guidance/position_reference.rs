@@ -32,6 +32,21 @@ pub struct PositionReference {
 }
 
 impl PositionReference {
+    /// One that is not calculated: nothing but NaN.
+    pub(crate) const UNKNOWN: Self = {
+        const NOT: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
+        Self {
+            position_m: NOT,
+            velocity_m_s: NOT,
+            acceleration_m_s2: NOT,
+            jerk_m_s3: NOT,
+            snap_m_s4: NOT,
+            yaw_rad: f64::NAN,
+            yaw_rate_rad_s: f64::NAN,
+            yaw_acceleration_rad_s2: f64::NAN,
+        }
+    };
+
     /// A position in NED, m, and a heading, rad, at rest.
     pub fn goal(position_m: [f64; 3], yaw_rad: f64) -> Self {
         Self {

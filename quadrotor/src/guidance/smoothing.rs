@@ -71,6 +71,9 @@ impl Smoothing {
         let pieces = profile.pieces();
         let first = pieces.iter().rposition(|(start_s, _)| *start_s <= begin_s).unwrap_or(0);
         let Some((start_s, piece)) = pieces.get(first) else { return [0.0; 5] };
+        if first + 1 == pieces.len() && piece.rests() {
+            return [piece.position, 0.0, 0.0, 0.0, 0.0];
+        }
         let middle = piece.after(time_s - mean_s - start_s);
         let curved = variance_s2 / 2.0;
         let Motion { position, velocity, acceleration, jerk } = middle;

@@ -51,6 +51,16 @@ pub struct Plant {
     likeness: u64,
 }
 
+/// The beginning of a step, which is the same however long the step is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BegunStep {
+    /// Where it begins: at rest on the ground, if it is held there.
+    from: PlantState,
+    /// The derivative there.
+    slope: PlantState,
+    held: bool,
+}
+
 /// The rest follows from what is compared.
 impl PartialEq for Plant {
     fn eq(&self, other: &Self) -> bool {
@@ -220,6 +230,26 @@ impl Plant {
         runge_kutta(&still, h_s, |state| held(self.derivative(state, inputs)))
     }
 
+    /// Begins a step of any length.
+    pub(crate) fn begin_step(&self, state: &PlantState, inputs: &PlantInputs) -> BegunStep {
+        if !self.is_held(state, inputs) {
+            return BegunStep { from: *state, slope: self.derivative(state, inputs), held: false };
+        }
+        let mut still = *state;
+        hold(&mut still);
+        BegunStep { from: still, slope: held(self.derivative(&still, inputs)), held: true }
+    }
+
+    /// Ends a step so many seconds after its beginning: where [`Plant::step`] leads, bit for bit.
+    pub(crate) fn end_step(&self, begun: &BegunStep, inputs: &PlantInputs, h_s: f64) -> PlantState {
+        let BegunStep { from, slope, held: is_held } = begun;
+        if *is_held {
+            runge_kutta_from(from, slope, h_s, |state| held(self.derivative(state, inputs)))
+        } else {
+            runge_kutta_from(from, slope, h_s, |state| self.derivative(state, inputs))
+        }
+    }
+
     /// Whether static friction holds the vehicle where it is.
     pub(crate) fn is_held<T: Valued>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>) -> bool {
         if !self.ground_plane || cannot_be_held(&state.body, inputs.ground_z_m.value(), self.reach_m) {
@@ -263,11 +293,53 @@ pub(crate) fn runge_kutta<T: Real>(
     mut f: impl FnMut(&PlantState<T>) -> PlantState<T>,
 ) -> PlantState<T> {
     let k1 = f(state);
-    let k2 = f(&state.plus(&k1, h_s / 2.0));
+    runge_kutta_from(state, &k1, h_s, f)
+}
+
+/// The same from a known k₁ = f(x).
+#[inline(always)]
+fn runge_kutta_from<T: Real>(
+    state: &PlantState<T>,
+    k1: &PlantState<T>,
+    h_s: f64,
+    mut f: impl FnMut(&PlantState<T>) -> PlantState<T>,
+) -> PlantState<T> {
+    let k2 = f(&state.plus(k1, h_s / 2.0));
     let k3 = f(&state.plus(&k2, h_s / 2.0));
     let k4 = f(&state.plus(&k3, h_s));
     // x + h/6 (k₁ + 2 (k₂ + k₃) + k₄)
     let ends = k1.zip_map(&k4, |first, last| first + last);
     let middle = k2.zip_map(&k3, |second, third| second + third);
     state.plus(&ends.zip_map(&middle, |ends, middle| ends + (middle + middle)), h_s / 6.0).normalized()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Airframe, Environment, InitialState, Plant, PlantInputs, PlantState};
+
+    /// In the air, sliding on the ground and held by it: the same as steps that begin by themselves, bit for bit.
+    #[test]
+    fn a_step_that_was_begun_once_ends_anywhere() {
+        let airframe = Airframe::default();
+        let plant = Plant::new(&airframe, &Environment { ground_plane: true });
+        for (height_m, velocity_m_s, share, held) in
+            [(10.0, 3.0, 1.1, false), (0.0, 3.0, 0.2, false), (-0.002, 0.0, 0.2, true)]
+        {
+            let initial = InitialState {
+                position_m: [1.0, -2.0, -height_m],
+                velocity_m_s: [velocity_m_s, 0.0, 0.0],
+                ..InitialState::default()
+            };
+            let state = PlantState::hovering(&initial, &airframe);
+            let [a, b, c, d] = state.rotor_speed_rad_s.map(|speed| share * speed);
+            let mut state = PlantState { rotor_speed_rad_s: [a, b, c, d], ..state };
+            state.discharge = 0.1;
+            let inputs = PlantInputs::rotor_speeds([1.1 * a, b, 0.9 * c, d]);
+            let begun = plant.begin_step(&state, &inputs);
+            assert_eq!(begun.held, held, "{height_m}");
+            for h_s in [0.001, 0.0025, 0.005] {
+                assert_eq!(plant.end_step(&begun, &inputs, h_s), plant.step(&state, &inputs, h_s));
+            }
+        }
+    }
 }

@@ -31,7 +31,8 @@ const MOST_TURNS: u64 = 50;
 /// A vehicle, what is known of its flight, and where it is reached.
 #[derive(Debug)]
 pub struct Member {
-    pub(super) autopilot: Autopilot,
+    /// Large, and in its place from the start: members are moved.
+    pub(super) autopilot: Box<Autopilot>,
     pub(super) hub: usize,
     pub(super) last_heartbeat: Instant,
     pub(super) lockstep: Option<Lockstep>,
@@ -73,7 +74,7 @@ impl Member {
             }
         };
         Ok(Self {
-            autopilot,
+            autopilot: Box::new(autopilot),
             hub,
             last_heartbeat: Instant::now(),
             lockstep: None,

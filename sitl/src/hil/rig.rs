@@ -183,7 +183,7 @@ impl Rig {
             told.push(messages::heartbeat());
         }
         if self.truth_us.is_some_and(|interval_us| self.time_us.is_multiple_of(interval_us)) {
-            told.push(hil_state_quaternion(motion, &self.frame, wind_m_s));
+            told.push(hil_state_quaternion(motion, &self.frame.to_geodetic(&motion.position_m), wind_m_s));
         }
         told.extend(readings.fix.map(|fix| messages::gps(&fix, &self.frame)));
         // Last: it makes the autopilot's time pass.

@@ -67,6 +67,12 @@ impl Flavor for Digest {
         Ok(())
     }
 
+    /// A number at once: there are a thousand of them in a state.
+    fn try_extend(&mut self, bytes: &[u8]) -> postcard::Result<()> {
+        self.bytes(bytes);
+        Ok(())
+    }
+
     fn finalize(self) -> postcard::Result<Self> {
         Ok(self)
     }

@@ -278,7 +278,7 @@ impl Gimbal {
     /// Whether it stays where it is while the vehicle looks, or not.
     pub fn rests(&self, looks: bool) -> bool {
         let still = |demand: Demand, angle: f64| match demand {
-            Demand::Angle(to, _) => wrapped(to - angle).abs() < RESTS_RAD,
+            Demand::Angle(to, _) => to == angle || wrapped(to - angle).abs() < RESTS_RAD,
             Demand::Rate(rate) => rate == 0.0,
         };
         let [roll, pitch, yaw] = self.angles_rad.data.0[0];

@@ -4,7 +4,7 @@ use super::estimate::Validity;
 use super::navigation::{InstrumentHealth, Readings};
 use super::true_motion::TrueMotion;
 use crate::fault::{Faults, Sensor, SensorFault};
-use crate::world::LocalFrame;
+use crate::world::Geodetic;
 
 /// An instrument that has said nothing new for longer has failed, µs.
 const PATIENCE_US: u64 = 500_000;
@@ -59,9 +59,9 @@ impl IdealSensors {
         Validity { horizontal_position: positioned, horizontal_velocity: positioned, ..Validity::ALL }
     }
 
-    /// What the instruments show.
-    pub fn readings(&self, motion: &TrueMotion, frame: &LocalFrame) -> Readings {
-        let mut readings = Readings::exact(motion, frame);
+    /// What the instruments show of a motion at a place.
+    pub fn readings(&self, motion: &TrueMotion, place: &Geodetic) -> Readings {
+        let mut readings = Readings::exact(motion, place);
         readings.gps = readings.gps.filter(|_| self.is_heard(Sensor::Gps, PATIENCE_US));
         readings
     }

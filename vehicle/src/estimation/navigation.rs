@@ -17,7 +17,7 @@ use super::vibration::Vibration;
 use super::vision::{VisionFusion, VisionReading, VisionTerms};
 use super::watch::{Trust, Watch};
 use crate::fault::{Faults, Sensor};
-use crate::world::{LocalFrame, atmospheric_pressure_pa, earth_field_ned};
+use crate::world::{Geodetic, LocalFrame, atmospheric_pressure_pa, earth_field_ned};
 
 /// A vehicle at rest says so to the estimator this often, µs.
 const STANDS_PERIOD_US: u64 = 100_000;
@@ -71,11 +71,10 @@ impl InstrumentHealth {
 }
 
 impl Readings {
-    /// What instruments without errors would show.
-    pub fn exact(motion: &TrueMotion, frame: &LocalFrame) -> Self {
+    /// What instruments without errors would show of a motion at a place.
+    pub fn exact(motion: &TrueMotion, place: &Geodetic) -> Self {
         let time_us = motion.time_us;
-        let place = frame.to_geodetic(&motion.position_m);
-        let field = earth_field_ned(&place);
+        let field = earth_field_ned(place);
         Self {
             inertial: InertialReading {
                 time_us,

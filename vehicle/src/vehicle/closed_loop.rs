@@ -24,6 +24,8 @@ pub struct ClosedLoop {
     limits: EasedLimits,
     wind: Wind,
     wind_m_s: Vector3<f64>,
+    /// Those of the latest tick. They are large, and little of them changes.
+    inputs: Inputs,
 }
 
 /// What a tick of the closed loop depends on beside the steering.
@@ -58,7 +60,8 @@ impl ClosedLoop {
         let inputs = Inputs { armed: false, ground_z_m, ..Inputs::default() };
         let simulation = Simulation::prepared(&design(configuration)?, &inputs)?;
         let limits = EasedLimits::new(&configuration.flyable_limits());
-        Ok(Self { simulation, foreign: None, limits, wind: Wind::new(wind), wind_m_s: Vector3::zeros() })
+        let (wind, wind_m_s) = (Wind::new(wind), Vector3::zeros());
+        Ok(Self { simulation, foreign: None, limits, wind, wind_m_s, inputs })
     }
 
     /// The same with a model from elsewhere, where that starts.
@@ -140,8 +143,8 @@ impl ClosedLoop {
     ) -> Result<(), FlightError> {
         let time_us = conditions.outputs.time_us;
         let dt_s = duration_us as f64 / 1e6;
-        // Inputs are large: they are completed in their place.
-        let mut inputs = steering.apply(&self.simulation, &self.limits, conditions.outputs, dt_s);
+        let inputs = &mut self.inputs;
+        steering.apply(&self.simulation, &self.limits, conditions.outputs, dt_s, inputs);
         self.wind_m_s = self.wind.velocity_m_s(time_us, conditions.height_m);
         inputs.ground_z_m = conditions.ground_z_m;
         let (force_n, torque_n_m) = conditions.load;
@@ -150,8 +153,8 @@ impl ClosedLoop {
         inputs.estimate = conditions.estimate;
         inputs.rotor_faults = conditions.rotor_faults;
         match &mut self.foreign {
-            Some(foreign) => foreign.advance(&mut self.simulation, &inputs, &self.limits, duration_us),
-            None => Ok(self.simulation.advance_to(time_us + duration_us, &inputs)?),
+            Some(foreign) => foreign.advance(&mut self.simulation, inputs, &self.limits, duration_us),
+            None => Ok(self.simulation.advance_to(time_us + duration_us, inputs)?),
         }
     }
 

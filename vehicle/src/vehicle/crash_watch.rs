@@ -76,17 +76,16 @@ impl CrashWatch {
 
     fn check_crash(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let acceleration = self.acceleration_m_s2.norm();
-        let error_rad = attitude_error_rad(situation);
         let lies = situation.conduct.crash.check
             && situation.flies()
             && keeps_a_lean(situation)
             && lean_rad(situation) > LEAST_LEAN_RAD
-            && error_rad > LEAST_ERROR_RAD
+            && attitude_error_rad(situation) > LEAST_ERROR_RAD
             && acceleration < MOST_ACCELERATION_M_S2
             && situation.outputs.velocity_m_s.norm() < MOST_SPEED_M_S;
         if self.crashing.update(lies, situation.time_us, CRASHED_US) {
             self.crashed = true;
-            let (error, least) = (error_rad / DEGREE, LEAST_ERROR_RAD / DEGREE);
+            let (error, least) = (attitude_error_rad(situation) / DEGREE, LEAST_ERROR_RAD / DEGREE);
             proposal.stop_rotors(format!(
                 "Crash: Disarming: AngErr={error:.0}>{least:.0}, Accel={acceleration:.1}<{MOST_ACCELERATION_M_S2:.1}"
             ));

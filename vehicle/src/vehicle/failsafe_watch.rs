@@ -51,6 +51,9 @@ impl Failsafe {
         let mut looked_for = causes.filter(|cause| **cause != Cause::SetPointsLost);
         looked_for.find_map(|cause| {
             let present = self.finds(situation, *cause);
+            if !present && !self.is_present(*cause) {
+                return None;
+            }
             let change = self.take_in(situation, proposal, *cause, present);
             change.map(|change| (*cause, change))
         })

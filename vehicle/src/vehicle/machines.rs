@@ -16,6 +16,7 @@ use super::follow::Follow;
 use super::ground_flight::GroundFlight;
 use super::hold_watch::HoldWatch;
 use super::injection::Injection;
+use super::landed::LandedState;
 use super::landing::Landing;
 use super::landing_pilot::LandingPilot;
 use super::mission::Mission;
@@ -157,6 +158,19 @@ impl Machines {
             Mode::Return => self.return_home.descends(),
             Mode::SmartReturn => self.smart_return.descends(),
             _ => false,
+        }
+    }
+
+    /// Whether what flies in a mode, armed or not, stands, climbs from the ground, flies or descends to the ground.
+    pub fn landed_state(&self, mode: Mode, armed: bool) -> LandedState {
+        match mode {
+            _ if self.landing.is_landed() => LandedState::OnGround,
+            // Its mode may stay that of a landing that has ended.
+            _ if !armed => LandedState::InAir,
+            Mode::Mission if self.mission.is_vertical().0 => LandedState::TakingOff,
+            Mode::Takeoff => LandedState::TakingOff,
+            mode if self.comes_down(mode) => LandedState::Landing,
+            _ => LandedState::InAir,
         }
     }
 

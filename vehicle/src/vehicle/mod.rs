@@ -33,7 +33,7 @@
 //!  while armed      the machine of the mode (takeoff, manual control, offboard, return, mission),
 //!                   or the rotor watch while a rotor is lost; then what waits: lost set-points, disarming
 //!  closed loop      flies as the steering says; perception looks at the motion
-//!  afterwards       rotor watch, hold watch, battery, touch-down and lift-off
+//!  afterwards       battery, contacts, rotor watch, hold watch, crash watch, touch-down and lift-off
 //! ```
 
 mod arming_obstacle;

@@ -188,10 +188,10 @@ impl Motion {
 
     /// Velocity that an axis wants, m/s, one that is given as it is; `None` if its acceleration is given or it follows a trajectory.
     fn wanted_m_s(&self, axis: usize, fastest: (f64, f64), (acceleration, jerk): (f64, f64)) -> Option<f64> {
-        let deceleration = (BRAKING_SHARE * acceleration).min(sqrt(2.0 * jerk * LATE_M_S));
-        let rate = POSITION_RATE.min(cbrt(jerk / JERK_PER_RATE));
         Some(match self.set_point.axes[axis] {
             AxisTarget::Position(goal) => {
+                let deceleration = (BRAKING_SHARE * acceleration).min(sqrt(2.0 * jerk * LATE_M_S));
+                let rate = POSITION_RATE.min(cbrt(jerk / JERK_PER_RATE));
                 approach(goal - self.state.position_m[axis], rate, deceleration).clamp(-fastest.0, fastest.1)
             }
             AxisTarget::Velocity(velocity) => velocity,

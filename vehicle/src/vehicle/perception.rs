@@ -1,6 +1,8 @@
 //! What the vehicle knows of its own motion: the truth, or what an estimator makes of instruments, or what the
 //! controllers measure with noise.
 
+use std::sync::OnceLock;
+
 use nalgebra::{Vector2, Vector3};
 use quadrotor::{GRAVITY_M_S2, Outputs, RigidBody};
 
@@ -15,7 +17,15 @@ use crate::estimation::{
 };
 use crate::fault::Faults;
 use crate::mode::Needs;
-use crate::world::LocalFrame;
+use crate::world::{Geodetic, LocalFrame};
+
+/// A position in a frame with its place on the earth.
+#[derive(Clone, Copy, Debug)]
+struct Here {
+    position_m: Vector3<f64>,
+    frame: LocalFrame,
+    place: Geodetic,
+}
 
 /// What is perceived of the motion, and by what.
 #[derive(Debug)]
@@ -27,6 +37,8 @@ pub struct Perception {
     /// Instruments and estimator, unless the truth is known.
     navigation: Option<Navigation>,
     ideal_sensors: IdealSensors,
+    /// Where it is on the earth, since somebody has asked: several messages tell it.
+    here: OnceLock<Here>,
     /// By how much the horizontal position slid with the last tick, m, and since the start.
     slid_m: Vector2<f64>,
     slid_before_m: Vector2<f64>,
@@ -41,6 +53,7 @@ impl Perception {
             outputs: truth,
             navigation,
             ideal_sensors: IdealSensors::default(),
+            here: OnceLock::new(),
             slid_m: Vector2::zeros(),
             slid_before_m: Vector2::zeros(),
         };
@@ -55,19 +68,35 @@ impl Perception {
         frame: &LocalFrame,
         faults: &Faults,
         errors: &SensorErrors,
-        aiding: &Aiding,
+        aiding: impl FnOnce() -> Aiding,
         stands: bool,
     ) {
         self.truth = closed_loop.outputs();
         match &mut self.navigation {
             Some(navigation) => {
-                navigation.step(&TrueMotion::of(&self.truth), frame, faults, errors, aiding, stands);
+                navigation.step(&TrueMotion::of(&self.truth), frame, faults, errors, &aiding(), stands);
                 let slid_m = navigation.estimate().slid_m;
                 (self.slid_m, self.slid_before_m) = (slid_m - self.slid_before_m, slid_m);
             }
             None => self.ideal_sensors.step(self.truth.time_us, faults),
         }
         self.outputs = self.known(closed_loop);
+        if self.here.get().is_some_and(|here| here.position_m != self.outputs.position_m) {
+            self.here = OnceLock::new();
+        }
+    }
+
+    /// A position, NED, m, as a place. That of the vehicle is calculated once, however often it is asked for.
+    pub fn place_of(&self, position_m: &Vector3<f64>, frame: &LocalFrame) -> Geodetic {
+        let calculate =
+            || Here { position_m: *position_m, frame: *frame, place: frame.to_geodetic(position_m) };
+        if *position_m == self.outputs.position_m {
+            let here = self.here.get_or_init(calculate);
+            if (here.position_m, here.frame) == (*position_m, *frame) {
+                return here.place;
+            }
+        }
+        calculate().place
     }
 
     /// A GPS fix comes from outside.
@@ -162,7 +191,10 @@ impl Perception {
     pub fn readings(&self, frame: &LocalFrame) -> Readings {
         match &self.navigation {
             Some(navigation) => *navigation.readings(),
-            None => self.ideal_sensors.readings(&TrueMotion::of(&self.truth), frame),
+            None => {
+                let place = self.place_of(&self.truth.position_m, frame);
+                self.ideal_sensors.readings(&TrueMotion::of(&self.truth), &place)
+            }
         }
     }
 

@@ -54,7 +54,7 @@ impl PilotWatch {
         let (pilot, settings) = (situation.pilot, &situation.conduct.radio);
         let mut wishes = Vec::new();
         if pilot.lost || pilot.sticks.is_none() {
-            (self.gesture, self.resting) = (None, None);
+            self.rest();
             return wishes;
         }
         if let Some(pulses) = &pilot.pulses {
@@ -70,6 +70,11 @@ impl PilotWatch {
             wishes.extend(self.look_at_movement(situation, settings, &sticks, dt_s));
         }
         wishes
+    }
+
+    /// There is no pilot to be looked at.
+    pub fn rest(&mut self) {
+        (self.gesture, self.resting) = (None, None);
     }
 
     /// The position of the mode switch, from 0.

@@ -73,9 +73,9 @@ pub struct Outcome {
 /// interest ([`Proposal::look_at`]). Changed speeds take effect after the call; the mission is told then, and plans its leg again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proposal<'a> {
-    /// Copied when it changes.
+    /// Copied when they change.
     steering: Cow<'a, Steering>,
-    home: Home,
+    home: Cow<'a, Home>,
     region: Option<RegionOfInterest>,
     requests: Vec<Request>,
 }
@@ -85,7 +85,7 @@ impl<'a> Proposal<'a> {
     pub fn new(situation: &Situation<'a>) -> Self {
         Self {
             steering: Cow::Borrowed(situation.steering),
-            home: *situation.home,
+            home: Cow::Borrowed(situation.home),
             region: situation.region,
             requests: Vec::new(),
         }
@@ -96,7 +96,7 @@ impl<'a> Proposal<'a> {
         matches!(self.steering, Cow::Borrowed(_))
             && self.requests.is_empty()
             && self.region == situation.region
-            && self.home == *situation.home
+            && (matches!(self.home, Cow::Borrowed(_)) || *self.home == *situation.home)
     }
 
     /// Ends the proposal.
@@ -105,7 +105,8 @@ impl<'a> Proposal<'a> {
             Cow::Borrowed(_) => None,
             Cow::Owned(steering) => Some(steering),
         };
-        Outcome { steering, home: self.home, region: self.region, requests: self.requests }
+        let home = self.home.into_owned();
+        Outcome { steering, home, region: self.region, requests: self.requests }
     }
 
     /// The working copy of the steering.
@@ -257,15 +258,16 @@ impl<'a> Proposal<'a> {
     ) -> Result<(), Refusal> {
         check_distance(&position_m)?;
         let yaw_rad = yaw_rad.unwrap_or(situation.outputs.attitude_rad.z);
-        self.home = Home { position_m, yaw_rad, set_by_user: true };
+        self.home = Cow::Owned(Home { position_m, yaw_rad, set_by_user: true });
         self.say(Severity::Info, "Home set");
         Ok(())
     }
 
     /// Moves home here, as arming does.
     pub fn move_home_here(&mut self, situation: &Situation) {
-        self.home.position_m = situation.outputs.position_m;
-        self.home.yaw_rad = situation.outputs.attitude_rad.z;
+        let home = self.home.to_mut();
+        home.position_m = situation.outputs.position_m;
+        home.yaw_rad = situation.outputs.attitude_rad.z;
     }
 
     /// Tells the pilot.

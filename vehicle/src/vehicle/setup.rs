@@ -12,6 +12,8 @@ use crate::world::{Geodetic, LocalFrame, ToldFrame, WindSettings};
 pub struct Setup {
     identity: Identity,
     conduct: Conduct,
+    /// How often that was set.
+    conduct_revision: u64,
     /// Where the simulated world is, and where the vehicle takes it to be.
     world: LocalFrame,
     frame: LocalFrame,
@@ -39,6 +41,7 @@ impl Setup {
         let mut setup = Self {
             identity,
             conduct,
+            conduct_revision: 0,
             world: frame,
             frame,
             told,
@@ -68,10 +71,16 @@ impl Setup {
         &self.conduct
     }
 
+    /// A number that changes whenever these may have changed.
+    pub fn conduct_revision(&self) -> u64 {
+        self.conduct_revision
+    }
+
     /// Changes the parameters of its behaviour.
     pub fn set_conduct(&mut self, conduct: Conduct) {
         let simulated = conduct.simulated.since(&self.wind, self.full_battery_v);
         self.conduct = Conduct { simulated, ..conduct };
+        self.conduct_revision += 1;
     }
 
     /// What the estimator fuses.

@@ -5,6 +5,8 @@ mod arming;
 mod decision;
 mod equipment;
 mod home_requests;
+mod lead;
+mod look_back;
 mod outputs;
 mod parachute;
 mod pilot;
@@ -22,22 +24,13 @@ use quadrotor::ConfigurationError;
 use super::battery::{capacity_ah, full_voltage_v};
 use super::closed_loop::{ClosedLoop, Conditions};
 use super::decided::Decided;
-use super::descent::descend;
-use super::failsafe::{Cause, Change};
 use super::home::Home;
-use super::landed::LandedState;
-use super::limit_release::is_fitting;
 use super::machines::Machines;
-use super::manual_control::fly_by_velocity;
-use super::mission::Helm;
-use super::notice::Severity;
 use super::perception::Perception;
 use super::plans::KnownPlans;
 use super::settings::VehicleSettings;
 use super::setup::Setup;
 use super::situation::Situation;
-use super::speed_choice::SpeedChoice;
-use super::speeds::SpeedChange;
 use super::tick::{TICK_S, TICK_US};
 use crate::FlightError;
 use crate::estimation::{Estimate, Navigation, SensorModel};
@@ -128,154 +121,17 @@ impl Vehicle {
             self.consult(|parts, situation, proposal| parts.injection.step(situation, proposal));
         }
         self.watch_pilot();
-        self.watch();
-        if self.decided.is_armed() {
-            self.fly();
-        }
+        self.lead();
         if self.machines.motor_tests.is_running() {
             self.consult(|parts, situation, proposal| parts.motor_tests.step(situation, proposal));
         }
         self.advance()?;
         self.perceive();
-        self.consult_both(
-            |parts, situation, proposal| {
-                parts.obstacles.measure(situation);
-                parts.obstacles.watch_contact(situation, proposal);
-            },
-            |parts, situation, proposal| parts.rotors.watch(situation, proposal, TICK_S),
-        );
-        self.consult_both(
-            |parts, situation, proposal| parts.hold.watch(situation, proposal),
-            |parts, situation, proposal| parts.crash.watch(situation, proposal, TICK_S),
-        );
         self.discharge();
-        let comes_down = self.landed_state() == LandedState::Landing;
-        self.consult(|parts, situation, proposal| {
-            parts.landing.watch(situation, proposal);
-            parts.landing.choose_speed(comes_down, situation, proposal);
-            parts.landing_pilot.watch(situation, proposal);
-            parts.flight_times.watch(situation);
-        });
+        self.look_back();
         self.step_equipment();
         self.step_parachute();
         Ok(())
-    }
-
-    /// Looks whether lowered limits can hold, at the fence, then at all causes of failsafes: what one of them does is decided before the
-    /// next one is looked at.
-    fn watch(&mut self) {
-        if self.machines.boot_fault.is_present() {
-            self.consult(|parts, situation, proposal| parts.boot_fault.watch(situation, proposal));
-        }
-        self.consult(|parts, situation, proposal| parts.traffic.watch(situation, proposal));
-        let restarted_us = self.perception.estimate().and_then(|estimate| estimate.restarted_us);
-        if let Some(restarted_us) = restarted_us.filter(|_| self.identity().is_ardupilot()) {
-            self.consult(|parts, situation, proposal| {
-                parts.vibration.watch(situation, proposal, restarted_us);
-            });
-        }
-        if self.conduct().precision.enabled {
-            self.consult(|parts, situation, proposal| parts.precision.watch(situation, proposal));
-        }
-        let easing = self.closed_loop.simulation().control().state().is_easing();
-        if self.closed_loop.limits().is_eased() && is_fitting(&self.situation(), easing) {
-            self.closed_loop.release_limits();
-        }
-        let (situation, parts) = self.situation_and_machines();
-        parts.consent.watch(&situation);
-        let chosen = SpeedChoice::of(&situation, parts.mission.takes_off());
-        let crossed = parts.fence.watch(&situation);
-        parts.simple.watch(&situation);
-        parts.failsafe.feel_wind(situation.wind_m_s.norm(), TICK_S);
-        let missing = parts.failsafe.feel_battery(&situation);
-        if let Some(text) = missing {
-            self.decided.say(Severity::Critical, text);
-        }
-        if chosen != self.machines.speeds.chosen() {
-            self.use_speeds_or_say(self.machines.speeds.after(SpeedChange::Choose(chosen)));
-        }
-        if let Some(breach) = crossed {
-            self.consult(|parts, situation, proposal| {
-                parts.failsafe.tell_crossing(situation, proposal, breach);
-            });
-        }
-        let mut causes = Cause::ALL.iter();
-        while !causes.as_slice().is_empty() {
-            self.consult(|parts, situation, proposal| {
-                if parts.failsafe.watch(situation, proposal, &mut causes)
-                    == Some((Cause::Fence, Change::Begun))
-                {
-                    parts.fence.count(situation.time_us);
-                }
-            });
-        }
-    }
-
-    /// One tick of the armed vehicle, by mode.
-    fn fly(&mut self) {
-        self.consult(|parts, situation, proposal| match situation.mode {
-            _ if situation.descends_without_rotor().is_some() => parts.rotors.descend(situation, proposal),
-            _ if parts.takeoff_check.blocks(situation, proposal) => {}
-            Mode::Throw => parts.throw.step(situation, proposal),
-            Mode::Takeoff => parts.takeoff.step(situation, proposal),
-            Mode::Hold => {}
-            Mode::Position => {
-                fly_by_velocity(&mut parts.climb, situation, proposal);
-                parts.precision.stay_above(situation, proposal);
-            }
-            Mode::Flip => parts.flip.step(situation, proposal),
-            Mode::ZigZag => parts.zigzag.step(&mut parts.climb, situation, proposal),
-            Mode::PositionHold
-                if situation.pilot.sticks.is_some_and(|sticks| sticks.leans(&situation.conduct.sticks)) =>
-            {
-                parts.stick_flight.step_by_height(&mut parts.climb, situation, proposal);
-            }
-            Mode::PositionHold => {
-                parts.stick_flight.forget();
-                fly_by_velocity(&mut parts.climb, situation, proposal);
-            }
-            Mode::Altitude => {
-                parts.stick_flight.step_by_height(&mut parts.climb, situation, proposal);
-            }
-            Mode::Stabilize | Mode::Manual | Mode::Acro => {
-                parts.stick_flight.step_by_thrust(situation, proposal);
-            }
-            Mode::Offboard | Mode::GuidedAttitude => {
-                parts.offboard.step(&mut parts.ground_flight, situation, proposal);
-            }
-            Mode::Mission | Mode::MissionLanding => match parts.mission.step(situation, proposal) {
-                Helm::Mission => {}
-                Helm::ReturnBegins => parts.return_home.begin(situation, proposal),
-                Helm::Return => parts.return_home.step(situation, proposal),
-            },
-            Mode::Land => descend(situation, proposal, None),
-            Mode::Return => parts.return_home.step(situation, proposal),
-            Mode::SmartReturn => parts.smart_return.step(situation, proposal),
-            Mode::Orbit => parts.orbit.step(situation, proposal),
-            Mode::Follow => parts.follow.step(situation, proposal),
-        });
-        self.consult(|parts, situation, proposal| {
-            if parts.offboard.hold_without_news(situation, proposal) {
-                parts.ground_flight.forget();
-            }
-            parts.ground_flight.step(situation, proposal);
-            if situation.mode != Mode::SmartReturn {
-                parts.smart_return.watch(situation, proposal);
-            }
-            // The pilot goes before the wind, and the wind before headings that are asked for, as in ArduPilot.
-            let by_hand = parts.pilot_turn.step(situation, proposal);
-            if !by_hand {
-                parts.pilot_turn.end(situation, proposal, &mut parts.turn, &mut parts.mission);
-            }
-            let turned = by_hand || parts.weathervane.step(situation, proposal);
-            if parts.turn.is_on() && !turned {
-                parts.turn.step(proposal);
-            } else if !turned && situation.chooses_its_heading() {
-                proposal.choose_heading(situation, parts.offboard.looks());
-            }
-            parts.landing.wait(situation, proposal);
-            parts.obstacles.keep_distance(situation, proposal);
-        });
     }
 
     /// Flies the closed loop as the steering asks.
@@ -327,8 +183,8 @@ impl Vehicle {
     fn perceive(&mut self) {
         let (closed_loop, faults) = (&self.closed_loop, self.faults());
         let (stands, errors) = (self.stands(), &self.setup.conduct().simulated.errors);
-        let aiding = self.setup.aiding();
-        self.perception.step(closed_loop, self.setup.world(), &faults, errors, &aiding, stands);
+        let aiding = || self.setup.aiding();
+        self.perception.step(closed_loop, self.setup.world(), &faults, errors, aiding, stands);
         let slid_m = self.perception.slid_m();
         if slid_m != Vector2::zeros() && self.mode().holds_a_felt_place() {
             self.consult(|_, _, proposal| proposal.slide(&slid_m));

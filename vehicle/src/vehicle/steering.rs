@@ -199,17 +199,20 @@ impl Steering {
         }
     }
 
-    /// What the closed loop is asked for in the tick that begins now.
+    /// Writes what the closed loop is asked for in the tick that begins now: target, plan, shaping and lost rotor. The rest of the inputs
+    /// stays.
     pub fn apply(
         &mut self,
         simulation: &Simulation,
         limits: &EasedLimits,
         outputs: &Outputs,
         dt_s: f64,
-    ) -> Inputs {
+        inputs: &mut Inputs,
+    ) {
         let strongest_n = simulation.configuration().airframe.thrust_range_n().1;
         let lost_rotor = self.lost_rotor().filter(|rotor| can_fly_without(simulation, *rotor));
-        let mut inputs = Inputs { lost_rotor, ..Inputs::default() };
+        inputs.lost_rotor = lost_rotor;
+        (inputs.plan, inputs.attitude_target, inputs.shaping) = (None, None, None);
         match self {
             Self::Idle { yaw_rad } => {
                 inputs.reference = at_rest(outputs.position_m, *yaw_rad);
@@ -241,7 +244,6 @@ impl Steering {
                 motion.step(&limits.largest(), dt_s);
             }
         }
-        inputs
     }
 }
 

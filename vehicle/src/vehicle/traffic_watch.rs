@@ -105,10 +105,15 @@ impl TrafficWatch {
         }
     }
 
-    /// Hears who is there, and acts when somebody comes too near.
+    /// Whether it is time, µs, to look at the traffic.
+    pub fn is_due(time_us: u64) -> bool {
+        time_us.is_multiple_of(JUDGED_US)
+    }
+
+    /// Hears who is there, and acts when somebody comes too near, when it is due.
     pub fn watch(&mut self, situation: &Situation, proposal: &mut Proposal) {
         let (time_us, settings) = (situation.time_us, &situation.conduct.surroundings.traffic);
-        if !time_us.is_multiple_of(JUDGED_US) {
+        if !Self::is_due(time_us) {
             return;
         }
         if time_us.is_multiple_of(HEARD_US) && settings.heard {

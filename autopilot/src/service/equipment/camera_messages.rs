@@ -193,7 +193,7 @@ pub fn quaternion(attitude_rad: &Vector3<f64>) -> [f32; 4] {
 }
 
 fn place(vehicle: &Vehicle, image: &Image) -> Geodetic {
-    vehicle.frame().to_geodetic(&image.position_m)
+    vehicle.place_of(&image.position_m)
 }
 
 fn height_m(image: &Image) -> f64 {

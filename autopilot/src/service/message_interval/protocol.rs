@@ -30,8 +30,9 @@ const MOST_PER_S: f64 = 4_000.0;
 #[derive(Clone, Debug, Default)]
 pub struct MessageIntervals {
     links: Vec<Schedule>,
-    /// The rates of groups that the parameters had at the last look.
+    /// The rates of groups that the parameters had at the last look, and the revision of all of them then.
     rates: StreamRates,
+    revision: u64,
 }
 
 impl Service for MessageIntervals {
@@ -109,6 +110,10 @@ impl Service for MessageIntervals {
 impl MessageIntervals {
     /// Parameters of rates hold at once.
     fn follow_parameters(&mut self, context: &Context) {
+        let revision = context.vehicle.conduct_revision();
+        if std::mem::replace(&mut self.revision, revision) == revision {
+            return;
+        }
         let rates = context.vehicle.conduct().stream_rates;
         if rates == self.rates {
             return;

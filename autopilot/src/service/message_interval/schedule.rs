@@ -43,6 +43,8 @@ pub struct Schedule {
     rates: GroupRates,
     regular: Vec<Regular>,
     wishes: Vec<Wish>,
+    /// No message is due before this time, µs.
+    quiet_until_us: u64,
 }
 
 impl Schedule {
@@ -137,11 +139,15 @@ impl Schedule {
         self.regular.retain(|regular| regular.stream.id != stream.id);
         if let Some(interval_us) = interval_us.map(allowed) {
             self.regular.push(Regular { stream, interval_us, due_us: time_us });
+            self.quiet_until_us = self.quiet_until_us.min(time_us);
         }
     }
 
     /// Messages that are due. Their times are multiples of the interval, so that a rate holds exactly on average.
     pub fn due(&mut self, time_us: u64, mut send: impl FnMut(&'static Stream)) {
+        if time_us < self.quiet_until_us {
+            return;
+        }
         for regular in self.regular.iter_mut().filter(|regular| regular.due_us <= time_us) {
             send(regular.stream);
             regular.due_us += regular.interval_us;
@@ -149,6 +155,7 @@ impl Schedule {
                 regular.due_us = time_us + regular.interval_us;
             }
         }
+        self.quiet_until_us = self.regular.iter().map(|regular| regular.due_us).min().unwrap_or(u64::MAX);
     }
 }
 
@@ -168,4 +175,34 @@ fn rate_hz(rates: &GroupRates, group: Group) -> Option<u8> {
 /// The nearest interval that can be kept, µs.
 fn allowed(interval_us: u64) -> u64 {
     interval_us.clamp(TICK_US, LONGEST_US)
+}
+
+#[cfg(test)]
+mod tests {
+    use mavlink::dialects::ardupilotmega::{MavMessage, SYSTEM_TIME_DATA};
+    use vehicle::GroupRates;
+
+    use super::{Interval, Schedule};
+    use crate::envelope::{LinkProfile, PeerId};
+    use crate::stream::Stream;
+
+    static SLOW: Stream =
+        Stream::new(1, [1.0, 1.0], |_| MavMessage::SYSTEM_TIME(SYSTEM_TIME_DATA::default()));
+    static ASKED: Stream =
+        Stream::new(2, [0.0, 0.0], |_| MavMessage::SYSTEM_TIME(SYSTEM_TIME_DATA::default()));
+
+    /// One that is asked for while all others rest is sent at once, and then at its own pace.
+    #[test]
+    fn a_new_message_does_not_wait_for_the_others() {
+        let peer = PeerId { link: 0, number: 1 };
+        let mut schedule = Schedule::new(LinkProfile::Ground, GroupRates::default(), [&SLOW].into_iter(), 0);
+        let mut sent = Vec::new();
+        for time_us in (0..2_000_000).step_by(100_000) {
+            if time_us == 300_000 {
+                schedule.set(peer, &ASKED, Interval::Each(500_000), time_us);
+            }
+            schedule.due(time_us, |stream| sent.push((stream.id, time_us / 100_000)));
+        }
+        assert_eq!(sent, [(1, 0), (2, 3), (2, 8), (1, 10), (2, 13), (2, 18)]);
+    }
 }

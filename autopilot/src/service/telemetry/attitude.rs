@@ -36,7 +36,7 @@ pub fn attitude_quaternion(vehicle: &Vehicle) -> MavMessage {
 pub fn second_attitude(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
     let [roll, pitch, yaw] = floats(&outputs.attitude_rad);
-    let place = vehicle.frame().to_geodetic(&outputs.position_m);
+    let place = vehicle.place_of(&outputs.position_m);
     MavMessage::AHRS2(AHRS2_DATA {
         roll,
         pitch,

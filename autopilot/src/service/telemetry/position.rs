@@ -21,7 +21,7 @@ pub fn local_position_ned(vehicle: &Vehicle) -> MavMessage {
 /// GLOBAL_POSITION_INT.
 pub fn global_position_int(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
-    let place = vehicle.frame().to_geodetic(&outputs.position_m);
+    let place = vehicle.place_of(&outputs.position_m);
     let above_home_m = vehicle.home().position_m.z - outputs.position_m.z;
     let [vx, vy, vz] = outputs.velocity_m_s.data.0[0].map(centimetres_per_second);
     MavMessage::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA {
@@ -40,7 +40,7 @@ pub fn global_position_int(vehicle: &Vehicle) -> MavMessage {
 /// HOME_POSITION.
 pub fn home_position(vehicle: &Vehicle) -> MavMessage {
     let home = vehicle.home();
-    let place = vehicle.frame().to_geodetic(&home.position_m);
+    let place = vehicle.place_of(&home.position_m);
     let [x, y, z] = floats(&vehicle.told_frame().told_m(&home.position_m));
     MavMessage::HOME_POSITION(HOME_POSITION_DATA {
         latitude: scaled_degrees(place.latitude_deg),

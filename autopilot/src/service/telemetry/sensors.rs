@@ -29,7 +29,7 @@ pub fn gps_raw_int(vehicle: &Vehicle) -> MavMessage {
             ..GPS_RAW_INT_DATA::default()
         });
     };
-    let place = vehicle.frame().to_geodetic(&fix.position_m);
+    let place = vehicle.place_of(&fix.position_m);
     let altitude_mm = (place.altitude_m * 1e3).round() as i32;
     let ground_m_s = fix.velocity_m_s.xy();
     let course_rad = libm::atan2(ground_m_s.y, ground_m_s.x);

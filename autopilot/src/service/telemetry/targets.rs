@@ -146,7 +146,7 @@ pub fn position_target_global_int(vehicle: &Vehicle) -> MavMessage {
     let outputs = vehicle.outputs();
     let reference = &outputs.setpoint;
     let destination_m = vehicle.destination_m();
-    let place = vehicle.frame().to_geodetic(&destination_m.unwrap_or(reference.position_m));
+    let place = vehicle.place_of(&destination_m.unwrap_or(reference.position_m));
     let target = POSITION_TARGET_GLOBAL_INT_DATA {
         time_boot_ms: boot_ms(outputs.time_us),
         lat_int: scaled_degrees(place.latitude_deg),

@@ -10,7 +10,7 @@ use crate::codec::{floats, hil_state_quaternion, scaled_degrees};
 pub fn sim_state(vehicle: &Vehicle) -> MavMessage {
     let truth = vehicle.truth();
     let force = TrueMotion::of(truth).specific_force_m_s2;
-    let place = vehicle.frame().to_geodetic(&truth.position_m);
+    let place = vehicle.place_of(&truth.position_m);
     let [q1, q2, q3, q4] = truth.quaternion.map(|part| part as f32);
     MavMessage::SIM_STATE(SIM_STATE_DATA {
         q1,
@@ -41,13 +41,15 @@ pub fn sim_state(vehicle: &Vehicle) -> MavMessage {
 
 /// HIL_STATE_QUATERNION: the same, as PX4's simulation tells it, and MAVSDK takes it for the ground truth.
 pub fn true_state(vehicle: &Vehicle) -> MavMessage {
-    hil_state_quaternion(&TrueMotion::of(vehicle.truth()), vehicle.frame(), &vehicle.wind_m_s())
+    let truth = vehicle.truth();
+    let place = vehicle.place_of(&truth.position_m);
+    hil_state_quaternion(&TrueMotion::of(truth), &place, &vehicle.wind_m_s())
 }
 
 /// SIMSTATE: the same, as ArduPilot's simulation tells it.
 pub fn simstate(vehicle: &Vehicle) -> MavMessage {
     let truth = vehicle.truth();
-    let place = vehicle.frame().to_geodetic(&truth.position_m);
+    let place = vehicle.place_of(&truth.position_m);
     let [roll, pitch, yaw] = floats(&truth.attitude_rad);
     let [xacc, yacc, zacc] = floats(&TrueMotion::of(truth).specific_force_m_s2);
     let [xgyro, ygyro, zgyro] = floats(&truth.body_rate_rad_s);

@@ -7,7 +7,7 @@ use vehicle::world::heading_deg;
 /// WIND_COV: where the air moves to, north, east and down, as PX4 tells it.
 pub fn wind_cov(vehicle: &Vehicle) -> MavMessage {
     let wind_m_s = vehicle.wind_m_s();
-    let place = vehicle.frame().to_geodetic(&vehicle.outputs().position_m);
+    let place = vehicle.place_of(&vehicle.outputs().position_m);
     MavMessage::WIND_COV(WIND_COV_DATA {
         time_usec: vehicle.time_us(),
         wind_x: wind_m_s.x as f32,

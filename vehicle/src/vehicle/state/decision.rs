@@ -11,8 +11,29 @@ use super::super::proposal::{Outcome, Proposal, Request};
 use super::super::situation::Situation;
 use super::super::speeds::{SpeedChange, Speeds, with_speeds};
 use super::super::steering::SteeringKind;
-use super::Vehicle;
+use super::{Vehicle, situation};
 use crate::mode::Mode;
+
+/// A machine that is shown a situation in its turn, and says what has become of that.
+pub(super) type Turn<'a> = &'a mut dyn FnMut(&mut Machines, &Situation, &mut Proposal) -> Shown;
+
+/// What has become of a situation that was shown to a machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shown {
+    /// It still tells how things are, as far as nothing was asked for.
+    Still,
+    /// The machine has changed what it tells.
+    Outdated,
+    /// It has, and the same machine is to be shown another one.
+    Again,
+}
+
+impl Shown {
+    /// Whether nothing has changed that a situation tells.
+    pub(super) fn still_if(unchanged: bool) -> Self {
+        if unchanged { Self::Still } else { Self::Outdated }
+    }
+}
 
 impl Vehicle {
     /// Shows the situation to a machine and carries out what it asks for. Returns the machine's answer.
@@ -20,9 +41,10 @@ impl Vehicle {
         &mut self,
         ask: impl FnOnce(&mut Machines, &Situation, &mut Proposal) -> T,
     ) -> T {
-        let (situation, parts) = self.situation_and_machines();
+        let Self { setup, closed_loop, perception, plans, decided, machines } = self;
+        let situation = situation(setup, closed_loop, perception, plans, decided, machines);
         let mut proposal = Proposal::new(&situation);
-        let answer = ask(parts, &situation, &mut proposal);
+        let answer = ask(machines, &situation, &mut proposal);
         if proposal.asks_nothing(&situation) {
             return answer;
         }
@@ -31,27 +53,27 @@ impl Vehicle {
         answer
     }
 
-    /// Shows the same situation to two machines, the first of which changes nothing that a situation tells; the second is shown a new one
-    /// if the first has asked for something.
-    pub(super) fn consult_both(
-        &mut self,
-        one: impl FnOnce(&mut Machines, &Situation, &mut Proposal),
-        other: impl FnOnce(&mut Machines, &Situation, &mut Proposal),
-    ) {
-        let (situation, parts) = self.situation_and_machines();
-        let mut proposal = Proposal::new(&situation);
-        one(parts, &situation, &mut proposal);
-        if proposal.asks_nothing(&situation) {
-            other(parts, &situation, &mut proposal);
+    /// Shows a situation to one machine after the other. A new one is shown as soon as one of them has changed what a situation tells, or
+    /// what it asks for has been carried out: mostly one situation serves them all.
+    pub(super) fn consult_in_turn(&mut self, turns: &mut [Turn]) {
+        let mut next = 0;
+        while next < turns.len() {
+            // Taken apart here: a situation is large, and made in its place.
+            let Self { setup, closed_loop, perception, plans, decided, machines } = self;
+            let situation = situation(setup, closed_loop, perception, plans, decided, machines);
+            let mut proposal = Proposal::new(&situation);
+            while let Some(ask) = turns.get_mut(next) {
+                let shown = ask(machines, &situation, &mut proposal);
+                next += usize::from(shown != Shown::Again);
+                if shown != Shown::Still || !proposal.asks_nothing(&situation) {
+                    break;
+                }
+            }
             if !proposal.asks_nothing(&situation) {
                 let outcome = proposal.into_outcome();
                 self.decide(outcome);
             }
-            return;
         }
-        let outcome = proposal.into_outcome();
-        self.decide(outcome);
-        self.consult(other);
     }
 
     fn decide(&mut self, outcome: Outcome) {

@@ -62,6 +62,11 @@ impl Vehicle {
         let how = (conduct.stick_timeout_s, watched);
         self.machines.receiver.look(identity, &conduct.radio, how, time_us);
         self.watch_buttons();
+        let pilot = self.pilot();
+        if pilot.lost || pilot.sticks.is_none() {
+            self.machines.pilot_watch.rest();
+            return;
+        }
         let (situation, parts) = self.situation_and_machines();
         for wish in parts.pilot_watch.look(&situation, TICK_S) {
             if let Err(refusal) = self.grant(wish) {

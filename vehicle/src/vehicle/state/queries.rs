@@ -24,7 +24,7 @@ use crate::identity::Identity;
 use crate::mode::Mode;
 use crate::plan::{MissionItem, PlanKind, Plans, Site, compile};
 use crate::surroundings::Terrain;
-use crate::world::{LocalFrame, ToldFrame};
+use crate::world::{Geodetic, LocalFrame, ToldFrame};
 
 impl Vehicle {
     /// Whose conventions it follows.
@@ -107,6 +107,11 @@ impl Vehicle {
         self.setup.frame()
     }
 
+    /// A position, NED, m, as a place on the earth. That of the vehicle is calculated once, however often it is asked for.
+    pub fn place_of(&self, position_m: &Vector3<f64>) -> Geodetic {
+        self.perception.place_of(position_m, self.frame())
+    }
+
     /// The local frame in which clients count.
     pub fn told_frame(&self) -> &ToldFrame {
         self.setup.told_frame()
@@ -140,6 +145,11 @@ impl Vehicle {
     /// Its own parameters.
     pub fn conduct(&self) -> &Conduct {
         self.setup.conduct()
+    }
+
+    /// A number that changes whenever those may have changed.
+    pub fn conduct_revision(&self) -> u64 {
+        self.setup.conduct_revision()
     }
 
     /// Everything that is broken now.
@@ -226,16 +236,7 @@ impl Vehicle {
 
     /// Whether it stands, climbs from the ground, flies or descends to the ground.
     pub fn landed_state(&self) -> LandedState {
-        let (climbs, _) = self.machines.mission.is_vertical();
-        match self.mode() {
-            _ if self.machines.landing.is_landed() => LandedState::OnGround,
-            // Its mode may stay that of a landing that has ended.
-            _ if !self.is_armed() => LandedState::InAir,
-            Mode::Mission if climbs => LandedState::TakingOff,
-            Mode::Takeoff => LandedState::TakingOff,
-            mode if self.machines.comes_down(mode) => LandedState::Landing,
-            _ => LandedState::InAir,
-        }
+        self.machines.landed_state(self.mode(), self.is_armed())
     }
 
     /// The fence as it is looked at; `None` while it is switched off.
