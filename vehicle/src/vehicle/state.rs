@@ -24,6 +24,7 @@ use super::closed_loop::{ClosedLoop, Conditions};
 use super::decided::Decided;
 use super::descent::descend;
 use super::failsafe::{Cause, Change};
+use super::fence_margin::FenceMargin;
 use super::home::Home;
 use super::landed::LandedState;
 use super::limit_release::is_fitting;
@@ -174,6 +175,7 @@ impl Vehicle {
                 parts.vibration.watch(situation, proposal, restarted_us);
             });
         }
+        self.watch_terrain();
         if self.conduct().precision.enabled {
             self.consult(|parts, situation, proposal| parts.precision.watch(situation, proposal));
         }
@@ -190,6 +192,10 @@ impl Vehicle {
         let missing = parts.failsafe.feel_battery(&situation);
         if let Some(text) = missing {
             self.decided.say(Severity::Critical, text);
+        }
+        let tells_margin = self.conduct().failsafe.fence_options.tells_margin;
+        if tells_margin || self.machines.fence_margin != FenceMargin::default() {
+            self.consult(|parts, situation, proposal| parts.fence_margin.watch(situation, proposal));
         }
         if chosen != self.machines.speeds.chosen() {
             self.use_speeds_or_say(self.machines.speeds.after(SpeedChange::Choose(chosen)));
