@@ -194,3 +194,20 @@ fn a_place_beyond_the_fence_fails() {
         assert_eq!(acks.last().map(|ack| ack.result), Some(result), "{north_m} m: {:?}", flier.bench.texts());
     }
 }
+
+/// A turn keeps to the rate that it is asked for, from rest to rest.
+#[test]
+fn a_turn_keeps_to_its_rate() {
+    let mut flier = Flier::new();
+    flier.take_off(10.0, GUIDED);
+    flier.fly(5.0);
+    let turn = [180.0, 30.0, 1.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_CONDITION_YAW, turn), ACCEPTED);
+    let mut fastest_deg_s = 0.0_f64;
+    for _ in 0..110 {
+        flier.fly(0.1);
+        fastest_deg_s = fastest_deg_s.max(flier.vehicle().outputs().body_rate_rad_s.z.to_degrees());
+    }
+    assert!((29.0..32.5).contains(&fastest_deg_s), "{fastest_deg_s}");
+    assert!(flier.heads(180.0, 2.0), "{}", flier.heading_deg());
+}
