@@ -57,6 +57,7 @@ mod telemetry;
 mod terrain;
 mod time_synchronization;
 pub(crate) mod traffic;
+mod tune;
 mod tuning_knob;
 mod utm_position;
 mod vision;

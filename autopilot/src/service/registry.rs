@@ -61,6 +61,7 @@ fn all() -> Vec<Box<dyn Service>> {
         Box::new(super::vision::Vision::default()),
         Box::new(super::button::Buttons::default()),
         Box::new(super::tuning_knob::TuningKnobs::default()),
+        Box::new(super::tune::Tunes),
         Box::new(super::traffic::Traffic),
         Box::new(super::remote_id::RemoteIdentification),
         Box::new(super::message_request::MessageRequests),

@@ -36,6 +36,8 @@ pub struct LoggedFix {
     pub course_deg: f64,
     /// Satellites used.
     pub satellites: u8,
+    /// What kind of fix it is, by MAVLink's number.
+    pub kind: u8,
 }
 
 impl<'a> LogSource<'a> {
@@ -59,6 +61,7 @@ impl<'a> LogSource<'a> {
             sink_m_s: stepped(fix.velocity_m_s.z, 1e2),
             course_deg: (course_deg * 1e2).floor() / 1e2,
             satellites: fix.satellites,
+            kind: vehicle.conduct().simulated.errors.gps_fix_type,
         })
     }
 

@@ -1,6 +1,6 @@
 //! What the fence refuses ahead of a flight.
 
-use crate::common::fence_bench::{DENIED, go_to, hovering, item, polygon, set_cast, square};
+use crate::common::fence_bench::{DENIED, FAILED, go_to, hovering, item, polygon, set_cast, square};
 use crate::common::plan_client::{result, upload};
 use crate::common::{Bench, settings};
 use mavlink::dialects::ardupilotmega::*;
@@ -117,12 +117,12 @@ fn inclusion_zones_combine_as_the_autopilot_does_it() {
     start.conduct.failsafe.fence_enabled = true;
     let mut bench = Bench::hovering_with(&start);
     assert_eq!(result(&upload(&mut bench, PlanKind::Fence, &zones(&start))), Some(0));
-    assert_eq!(go_to(&mut bench, 0.0, 50.0), DENIED, "in one of them only");
+    assert_eq!(go_to(&mut bench, 0.0, 50.0), FAILED, "in one of them only");
     assert_eq!(go_to(&mut bench, 20.0, 20.0), 0, "{:?}", bench.texts());
     assert_eq!(set_cast(&mut bench, "FENCE_OPTIONS", 3.0), Some(3.0));
     assert_eq!(go_to(&mut bench, 0.0, 50.0), 0, "{:?}", bench.texts());
     assert_eq!(set_cast(&mut bench, "FENCE_OPTIONS", 0.0), Some(0.0));
-    assert_eq!(go_to(&mut bench, 0.0, 50.0), DENIED);
+    assert_eq!(go_to(&mut bench, 0.0, 50.0), FAILED);
     let start = settings(Identity::Px4);
     let mut bench = hovering(&start, zones(&start), Vec::new());
     assert_eq!(go_to(&mut bench, 0.0, 50.0), 0, "{:?}", bench.texts());
@@ -138,7 +138,7 @@ fn a_polygon_may_be_closed_by_its_first_vertex() {
     let mut bench = Bench::hovering_with(&start);
     assert_eq!(result(&upload(&mut bench, PlanKind::Fence, &ring)), Some(0), "{:?}", bench.texts());
     assert_eq!(bench.autopilot.vehicle().plans().get(PlanKind::Fence).items().len(), 5, "as it came");
-    assert_eq!((go_to(&mut bench, 25.0, 0.0), go_to(&mut bench, 15.0, 0.0)), (DENIED, 0));
+    assert_eq!((go_to(&mut bench, 25.0, 0.0), go_to(&mut bench, 15.0, 0.0)), (FAILED, 0));
 }
 
 /// A mission that comes in flight begins where the vehicle is: a wall between it and home is in the way of what is near home.

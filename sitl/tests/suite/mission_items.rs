@@ -1,6 +1,7 @@
 //! Items of missions beside waypoints: curves, altitudes, tags, payloads, and what the vehicle does not carry.
 
 use crate::common;
+use crate::common::failsafe_bench::set;
 use crate::common::mission_flight::{Flight, NAN, at, simple, takeoff, waypoint};
 use mavlink::dialects::ardupilotmega::MavCmd;
 use nalgebra::Vector3;
@@ -201,7 +202,7 @@ fn the_nose_turns_to_a_place_before_it_is_flown_to() {
     let fly = |mode: f64| {
         let items = [takeoff(), waypoint([30.0, 0.0, -10.0]), waypoint([30.0, 30.0, -10.0])];
         let mut flight = Flight::of(Identity::Px4, &items);
-        common::failsafe_bench::set(&mut flight.bench, "MPC_YAW_MODE", mode);
+        set(&mut flight.bench, "MPC_YAW_MODE", mode);
         flight.bench.arm();
         assert_eq!(flight.bench.set_mode(Mode::Mission), 0);
         let flight = flight.complete(90.0);
@@ -212,4 +213,30 @@ fn the_nose_turns_to_a_place_before_it_is_flown_to() {
     assert!((turned_deg - 90.0).abs() < 14.0 && nearest_m < 0.3, "{turned_deg} deg, {nearest_m} m");
     let (turned_deg, nearest_m) = fly(0.0);
     assert!(turned_deg < 70.0 && nearest_m > 0.3, "{turned_deg} deg, {nearest_m} m");
+}
+
+/// PX4: a waypoint that asks for a heading is left only within MIS_YAW_ERR of it, on a short way by stopping there; with MIS_YAW_TMT
+/// nothing is waited for.
+#[test]
+fn a_waypoint_is_left_with_the_heading_that_it_asks_for() {
+    let north_of_home = |north_m: f64, heading_deg: f64| {
+        at(command::NAV_WAYPOINT, [0.0, 2.0, 0.0, heading_deg], [north_m, 0.0, -10.0])
+    };
+    let items = [takeoff(), north_of_home(10.0, 0.0), north_of_home(16.0, 180.0), north_of_home(60.0, 90.0)];
+    let off_deg = |parameter: Option<(&str, f64)>| {
+        let mut flight = Flight::of(Identity::Px4, &items);
+        parameter.into_iter().for_each(|(id, value)| set(&mut flight.bench, id, value));
+        flight.bench.arm();
+        assert_eq!(flight.bench.set_mode(Mode::Mission), 0);
+        [(1, 0.0), (2, 180.0), (3, 90.0)].map(|(item, heading_deg)| {
+            flight.fly_until("the waypoint", 60.0, |flight| flight.order().contains(&item));
+            ((flight.heading_deg() - heading_deg + 180.0).rem_euclid(360.0) - 180.0).abs()
+        })
+    };
+    let off = off_deg(None);
+    assert!(off.iter().all(|off| *off < 12.0), "{off:?}");
+    let exactly = off_deg(Some(("MIS_YAW_ERR", 3.0)));
+    assert!(exactly.iter().all(|off| *off < 3.0), "{exactly:?}");
+    let unheeded = off_deg(Some(("MIS_YAW_TMT", 5.0)));
+    assert!(unheeded[1] > 45.0, "{unheeded:?}");
 }

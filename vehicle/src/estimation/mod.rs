@@ -48,7 +48,7 @@ pub use estimate::{Estimate, TestRatios, Validity};
 pub use estimator::Estimator;
 pub use ideal::IdealSensors;
 pub use navigation::{InstrumentHealth, Navigation, Readings};
-pub use sensor_errors::{MagnetometerUse, SensorErrors, SensorSwitches, Triple};
+pub use sensor_errors::{FIX_3D, MagnetometerUse, SensorErrors, SensorSwitches, Triple};
 pub use settings::{SensorModel, SensorSettings};
 pub use true_motion::TrueMotion;
 pub use vibration::Vibration;

@@ -60,6 +60,8 @@ pub struct SensorErrors {
     pub gps_noise_m: f64,
     /// Satellites that the receiver says it uses.
     pub gps_satellites: u8,
+    /// Kind of fix that the receiver tells, by MAVLink's number; below that of a place in three dimensions it has none.
+    pub gps_fix_type: u8,
     /// Fixes per second.
     pub gps_rate_hz: u8,
     /// Time from a fix to its message, ms.
@@ -117,6 +119,9 @@ const SATELLITES: u8 = 12;
 /// A degree of latitude, m.
 const DEGREE_M: f64 = 111_319.5;
 
+/// GPS_FIX_TYPE_3D_FIX.
+pub const FIX_3D: u8 = 3;
+
 impl Default for SensorErrors {
     fn default() -> Self {
         Self {
@@ -135,6 +140,7 @@ impl Default for SensorErrors {
             gps_jammed: false,
             gps_noise_m: 0.0,
             gps_satellites: SATELLITES,
+            gps_fix_type: FIX_3D,
             gps_rate_hz: RATE_HZ,
             gps_latency_ms: (LATENCY_US / 1000) as u16,
         }
@@ -165,6 +171,7 @@ impl SensorErrors {
         let quiet = Self {
             switches: SensorSwitches { barometer_frozen: self.switches.barometer_frozen, ..self.switches },
             gps_satellites: self.gps_satellites,
+            gps_fix_type: self.gps_fix_type.max(FIX_3D),
             gps_rate_hz: self.gps_rate_hz,
             gps_latency_ms: self.gps_latency_ms,
             ..Self::default()
@@ -265,6 +272,9 @@ impl ErrorSource {
         let east_m = longitude * DEGREE_M * libm::cos(latitude_deg.to_radians());
         fix.position_m += Vector3::new(latitude * DEGREE_M, east_m, -up_m - noise);
         fix.satellites = errors.gps_satellites;
+        if errors.gps_fix_type < FIX_3D {
+            return None;
+        }
         if errors.gps_jammed { self.jamming.disturb(fix, &mut self.noise) } else { Some(fix) }
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use nalgebra::Vector3;
 
-use super::{Inclusions, Zones};
+use super::{Inclusions, Zone, Zones};
 
 /// What of the fence forbids a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,6 +68,11 @@ impl Fence<'_> {
     pub fn bounds(&self) -> bool {
         let zones = self.zones.is_some_and(|zones| !zones.zones.is_empty());
         zones || self.radius_m > 0.0 || self.height_m > 0.0
+    }
+
+    /// Whether a zone has to be kept to whatever the others are: of several to stay in, one may be enough.
+    pub fn holds_alone(&self, zone: &Zone) -> bool {
+        !zone.inclusion || self.inclusions == Inclusions::All
     }
 
     /// What forbids a place, NED, m, if anything does.

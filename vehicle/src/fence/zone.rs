@@ -102,6 +102,12 @@ impl Zone {
     pub fn forbids(&self, point: [f64; 2]) -> bool {
         self.shape.contains(point) != self.inclusion
     }
+
+    /// How far a point is on the right side of the border, m; negative: on the wrong one.
+    pub fn room_m(&self, point: [f64; 2]) -> f64 {
+        let distance_m = self.shape.distance_m(point);
+        if self.forbids(point) { -distance_m } else { distance_m }
+    }
 }
 
 fn distance([ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> f64 {

@@ -116,7 +116,7 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
     kept!(ArduPilot, "the ground is always known in flight (--world)", real [], whole [
         ("WPNAV_RFND_USE", 1, 0..=1, "", "Use of a rangefinder in missions; if this and TERRAIN_ENABLE are 0, a mission above the terrain keeps the vehicle from arming"),
         ("WP_RFND_USE", 1, 0..=1, "", "Use of a rangefinder in missions; if this and TERRAIN_ENABLE are 0, a mission above the terrain keeps the vehicle from arming"),
-        ("TERRAIN_ENABLE", 1, 0..=1, "", "Use of terrain data; if this and WP_RFND_USE are 0, a mission above the terrain keeps the vehicle from arming"),
+        ("TERRAIN_ENABLE", 1, 0..=1, "", "Use of terrain data; if this and WP_RFND_USE are 0, a mission above the terrain keeps the vehicle from arming, and one that is flown returns"),
         ("TERRAIN_FOLLOW", 0, 0..=1, "", "Follow the terrain; here places above the terrain and RTL_ALT_TYPE ask for that"),
         ("SIM_TERRAIN", 1, 0..=1, "", "Ground follows terrain data; here that of --world"),
     ]),

@@ -182,9 +182,7 @@ pub static PARAMETERS: &[&[KeptParameter]] = &[
         ("CA_FAILURE_MODE", 0, 0..=1, "", "How to fly without a failed motor"),
         ("MC_AIRMODE", 0, 0..=2, "", "Keep control at the lowest thrust: 0 off, 1 for roll and pitch, 2 also for yaw"),
     ]),
-    kept!(Px4, "missions turn as their items say and wait for no heading", real [
-        ("MIS_YAW_ERR", 12.0, 0.0..=90.0, "deg", "Largest error of the heading at a waypoint"),
-        ("MIS_YAW_TMT", -1.0, -1.0..=20.0, "s", "Longest wait for the heading at a waypoint; negative: none"),
+    kept!(Px4, "missions fly their items as they are, and a multicopter has no turning radius", real [
         ("MIS_DIST_WPS", 900.0, -1.0..=100000.0, "m", "Largest distance between waypoints"),
         ("NAV_MC_ALT_RAD", 0.8, 0.05..=200.0, "m", "Vertical acceptance radius; here NAV_ACC_RAD is that of a sphere"),
         ("NAV_FW_ALT_RAD", 10.0, 0.05..=200.0, "m", "Vertical acceptance radius of fixed wings"),

@@ -21,6 +21,7 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     choice!("FENCE_ALT_MIN_TP", FENCE_DATUMS, failsafe.fence_floor_from, "What FENCE_ALT_MIN is above"),
     real!("FENCE_RADIUS", None, -1.0..=100_000.0, failsafe.fence_radius_m, "m", "Radius of the fence around home; 0 disables it, a negative one forbids arming"),
     real!("FENCE_MARGIN", None, 0.0..=1000.0, failsafe.fence_margin_m, "m", "How far inside of the fence sticks stop, and how far above its floor the vehicle must have been for that to count"),
+    real!("FENCE_NTF_FREQ", None, 0.0..=10.0, failsafe.fence_tells_hz, "Hz", "How often the way to the fence is told within its margin, if FENCE_OPTIONS asks for that; 0: once"),
     choice!("FENCE_AUTOENABLE", FENCE_STARTS, failsafe.fence_starts, "When the fence switches itself on"),
     choice!("FENCE_ACTION", FENCE_ACTIONS, failsafe.fence, "Action at the fence"),
     switch!("FS_VIBE_ENABLE", simulated.errors.switches.starts_again, "Trust the GPS receiver when the accelerometers keep contradicting it"),
@@ -66,8 +67,8 @@ pub static ARDUPILOT_PARAMETERS: &[ConductParameter] = &[
     },
     real!("BATT_ARM_VOLT", None, 0.0..=100.0, failsafe.battery_limits.to_arm_v, "V", "Least voltage to arm with; 0: any"),
     real!("BATT_ARM_MAH", None, 0.0..=100_000.0, failsafe.battery_limits.to_arm_mah, "mAh", "Least remaining charge to arm with; 0: any"),
-    whole!("ARMING_CHECK", 0..=1_048_575, arming.checks, i32, "Checks before arming, added up; 0 skips all of them, any other number makes all of them"),
-    whole!("ARMING_SKIPCHK", -1..=1_048_575, arming.skipped, i32, "Checks before arming that are skipped, added up; -1 skips all of them, any other number none"),
+    whole!("ARMING_CHECK", 0..=1_048_575, arming.checks, i32, "Checks before arming, added up: 1 all, 2 barometer, 4 compass, 8 GPS, 16 inertial unit, 256 battery; 0 skips all of them"),
+    whole!("ARMING_SKIPCHK", -1..=1_048_575, arming.skipped, i32, "Checks before arming that are skipped, added up: 2 barometer, 4 compass, 8 GPS, 16 inertial unit, 256 battery; -1 skips all of them"),
     switch!("ARMING_NEED_LOC", arming.needs_place, "Whether the place must be known to arm in any mode; modes that fly by it need it in any case"),
     switch!("BRD_SAFETY_DEFLT", arming.is_safe_at_the_start, "Whether the safety switch is on after the next start"),
     bitmask!("ARMING_MIS_ITEMS", REQUIRED_ITEMS, arming.required_items, identity, identity, "Mission items without which the vehicle does not arm"),
@@ -183,7 +184,7 @@ fn asked<A: Copy + PartialEq>(
 const FENCE_OPTIONS: &[&str] = &[
     "No other mode while the vehicle comes back from a breach",
     "One of several inclusion zones is enough",
-    "Reports of the margin; here of a breach ahead in any case",
+    "Tell the way to the fence within its margin (FENCE_NTF_FREQ)",
 ];
 const KEEPS_MODE: u32 = 1;
 const UNION: u32 = 2;

@@ -98,6 +98,7 @@ pub static SIMULATION_PARAMETERS: &[ConductParameter] = &[
     switch!("SIM_GPS_DISABLE", simulated.errors.switches.gps, "Whether the GPS receiver is silent; the opposite of SIM_GPS1_ENABLE", not).other(),
     whole!("SIM_GPS1_NUMSATS", 0..=40, simulated.errors.gps_satellites, u8, "Satellites that the receiver says it uses"),
     whole!("SIM_GPS_NUMSATS", 0..=40, simulated.errors.gps_satellites, u8, "Satellites that the receiver says it uses").other(),
+    whole!("SIM_GPS1_FIXTYPE", 0..=6, simulated.errors.gps_fix_type, u8, "Kind of fix that the receiver tells: 0 none, 1 no fix, 2 two dimensions, 3 three, 4 differential, 5 RTK float, 6 RTK fixed; below 3 it has no place"),
     whole!("SIM_GPS1_HZ", 2..=50, simulated.errors.gps_rate_hz, u8, "Rate of GPS fixes, Hz"),
     whole!("SIM_GPS_HZ", 2..=50, simulated.errors.gps_rate_hz, u8, "Rate of GPS fixes, Hz; the same as SIM_GPS1_HZ").other(),
     whole!("SIM_GPS1_LAG_MS", 0..=300, simulated.errors.gps_latency_ms, u16, "Delay from a GPS fix to its message, ms; the estimator knows it"),

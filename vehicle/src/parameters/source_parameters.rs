@@ -23,6 +23,7 @@ pub static SOURCE_PARAMETERS: &[ConductParameter] = &[
     whole!("EK3_SRC3_YAW", 0..=8, aiding.ardupilot.third.heading, u8, "Third source of the heading: 6 vision, otherwise the compass"),
     whole!("EK3_SRC_OPTIONS", 0..=3, aiding.ardupilot.options, u8, "Options of sources; with the first bit, velocities of all sets are fused"),
     choice!("VISO_TYPE", VISION_KINDS, aiding.ardupilot.vision_kind, "Kind of visual odometry; all kinds send messages"),
+    real!("VISO_SCALE", None, 0.0..=100.0, aiding.ardupilot.scale, "", "What positions of visual odometry are multiplied by"),
     real!("VISO_POS_X", None, -5.0..=5.0, aiding.ardupilot.place.x, "m", "Place that visual odometry tells, forwards of the inertial unit"),
     real!("VISO_POS_Y", None, -5.0..=5.0, aiding.ardupilot.place.y, "m", "Place that visual odometry tells, to the right of it"),
     real!("VISO_POS_Z", None, -5.0..=5.0, aiding.ardupilot.place.z, "m", "Place that visual odometry tells, below it"),

@@ -15,10 +15,9 @@ pub struct CommandedTurn {
 impl CommandedTurn {
     /// Turns from the heading that is asked for now.
     pub fn begin(&mut self, turn: &Turn, situation: &Situation) {
-        let asked_rad = self.turning.map(|turning| turning.heading().0);
-        let from_rad = asked_rad.unwrap_or(situation.outputs.setpoint.yaw_rad);
-        let fastest_rad_s = situation.limits().yaw_rate_rad_s;
-        self.turning = Some(Turning::new(turn, from_rad, fastest_rad_s));
+        let asked = self.turning.map(|turning| turning.heading().into());
+        self.turning =
+            Some(Turning::new(turn, asked.unwrap_or_else(|| heading_now(situation)), situation.limits()));
     }
 
     /// Something else decides about the heading.
@@ -39,6 +38,12 @@ impl CommandedTurn {
     }
 }
 
+/// The heading that is followed, rad, and its rate, rad/s.
+pub fn heading_now(situation: &Situation) -> [f64; 2] {
+    let now = &situation.outputs.setpoint;
+    [now.yaw_rad, now.yaw_rate_rad_s]
+}
+
 #[cfg(test)]
 mod tests {
     use core::f64::consts::FRAC_PI_2;
@@ -48,6 +53,7 @@ mod tests {
     use crate::vehicle::scene::Scene;
     use crate::vehicle::set_point::PositionSetPoint;
     use crate::vehicle::steering::Steering;
+    use crate::vehicle::turning::SHARE;
 
     /// Heading of the goal, rad, and its rate, rad/s.
     fn heading(scene: &Scene) -> (f64, f64) {
@@ -70,7 +76,11 @@ mod tests {
             scene.show(|_, proposal| commanded.step(proposal));
         }
         let (yaw_rad, rate_rad_s) = heading(&scene);
-        assert!((yaw_rad - 1.0).abs() < 1e-9 && rate_rad_s == 0.25, "{yaw_rad} {rate_rad_s}");
+        // Less what it lags behind while it reaches its rate.
+        let acceleration_rad_s2 = SHARE * scene.limits.wanted().yaw_acceleration_rad_s2;
+        let expected_rad = 1.0 - 0.25 * 0.25 / (2.0 * acceleration_rad_s2);
+        assert!((yaw_rad - expected_rad).abs() < 1e-3, "{yaw_rad}");
+        assert!((rate_rad_s - 0.25).abs() < 1e-9, "{rate_rad_s}");
         for _ in 0..20_000 {
             scene.show(|_, proposal| commanded.step(proposal));
         }

@@ -10,6 +10,7 @@ use super::follow_settings::FollowSettings;
 use super::ground_stations::GroundStations;
 use super::heading_policy::HeadingPolicy;
 use super::log_conduct::LogConduct;
+use super::mission_heading::MissionHeading;
 use super::orbit_request::OrbitSettings;
 use super::precision_settings::PrecisionSettings;
 use super::return_settings::ReturnSettings;
@@ -115,6 +116,9 @@ pub struct Conduct {
     /// Whether a mission that was left begins anew (ArduPilot: MIS_RESTART).
     #[serde(default)]
     pub mission_restarts: bool,
+    /// How exactly a mission takes the headings that it asks for.
+    #[serde(default)]
+    pub mission_heading: MissionHeading,
     /// Options of missions, as ArduPilot's parameter adds them up (MIS_OPTIONS).
     #[serde(default)]
     pub mission_options: u8,
@@ -263,6 +267,7 @@ impl Conduct {
             follow: FollowSettings::default(),
             trail: TrailSettings::default(),
             mission_restarts: false,
+            mission_heading: MissionHeading::default(),
             mission_options: 0,
             arming: ArmingSettings::default(),
             failsafe: FailsafeSettings::new(ardupilot),

@@ -4,7 +4,7 @@ use nalgebra::{Vector2, Vector3};
 
 use super::set_point::{AxisTarget, PositionSetPoint};
 use super::situation::Situation;
-use crate::fence::{Fence, Inclusions, Shape, Zone, distance_to};
+use crate::fence::{Fence, Shape, distance_to};
 use crate::mode::Mode;
 
 /// Of AVOID_ENABLE.
@@ -89,29 +89,22 @@ fn kept_once(situation: &Situation, fence: &Fence, mut velocity: Vector2<f64>) -
         keep(&|place| fence.radius_m - (place - fence.home_m.xy()).norm());
     }
     let zones = || fence.zones.iter().flat_map(|zones| &zones.zones);
-    let alone = |zone: &Zone| !zone.inclusion || fence.inclusions == Inclusions::All;
-    for zone in zones().filter(|zone| alone(zone)) {
+    for zone in zones().filter(|zone| fence.holds_alone(zone)) {
         match &zone.shape {
             Shape::Polygon(polygon) if !zone.forbids(here.into()) => {
                 for side in polygon.sides() {
                     keep(&|place| distance_to(&side, place.into()));
                 }
             }
-            _ => keep(&|place| room_m(zone, place)),
+            _ => keep(&|place| zone.room_m(place.into())),
         }
     }
     // It is enough to be in one of the others: that with the most room.
-    if zones().any(|zone| !alone(zone)) {
-        let others = || zones().filter(|zone| !alone(zone));
-        keep(&|place| others().map(|zone| room_m(zone, place)).fold(f64::NEG_INFINITY, f64::max));
+    if zones().any(|zone| !fence.holds_alone(zone)) {
+        let others = || zones().filter(|zone| !fence.holds_alone(zone));
+        keep(&|place| others().map(|zone| zone.room_m(place.into())).fold(f64::NEG_INFINITY, f64::max));
     }
     velocity
-}
-
-/// How far a place is on the right side of a zone's border, m.
-fn room_m(zone: &Zone, place: Vector2<f64>) -> f64 {
-    let distance_m = zone.shape.distance_m(place.into());
-    if zone.forbids(place.into()) { -distance_m } else { distance_m }
 }
 
 /// A velocity down that keeps above the floor, if that counts, and below the ceiling.

@@ -9,6 +9,7 @@ use super::button_watch::ButtonWatch;
 use super::commanded_turn::CommandedTurn;
 use super::crash_watch::CrashWatch;
 use super::failsafe::Failsafe;
+use super::fence_margin::FenceMargin;
 use super::fence_watch::FenceWatch;
 use super::flight_times::FlightTimes;
 use super::flip::Flip;
@@ -43,6 +44,7 @@ use super::stick_flight::StickFlight;
 use super::takeoff::Takeoff;
 use super::takeoff_check::TakeoffCheck;
 use super::takeoff_consent::TakeoffConsent;
+use super::terrain_watch::TerrainWatch;
 use super::throw::Throw;
 use super::traffic_watch::TrafficWatch;
 use super::vibration_watch::VibrationWatch;
@@ -67,6 +69,10 @@ pub struct Machines {
     pub battery: Battery,
     /// Breaches of the fence.
     pub fence: FenceWatch,
+    /// Borders of the fence that are near.
+    pub fence_margin: FenceMargin,
+    /// Missions above a ground that is not known.
+    pub terrain: TerrainWatch,
     /// Failsafes.
     pub failsafe: Failsafe,
     /// What is told of accelerometers that are not believed.
@@ -188,6 +194,8 @@ impl Machines {
             injection: Injection::new(settings.faults.clone()),
             battery: Battery::new(settings.battery),
             fence: FenceWatch::default(),
+            fence_margin: FenceMargin::default(),
+            terrain: TerrainWatch::default(),
             failsafe: Failsafe::default(),
             rotors: RotorWatch::new(truth.rotor_speed_rad_s),
             vibration: VibrationWatch::default(),

@@ -207,10 +207,11 @@ impl Perception {
         let knows_place = validity.horizontal_position && validity.vertical_position;
         let has_compass =
             health.magnetometer || self.navigation.as_ref().is_some_and(Navigation::has_vision_heading);
+        let of = |px4: &'static str, words: &'static str| if ardupilot { words } else { px4 };
         let checks = [
-            (health.gyroscope, Subject::Gyroscope, "gyroscope failed"),
-            (health.accelerometer, Subject::Accelerometer, "accelerometer failed"),
-            (has_compass, Subject::Magnetometer, "magnetometer failed"),
+            (health.gyroscope, Subject::Gyroscope, of("gyroscope failed", "Gyros not healthy")),
+            (health.accelerometer, Subject::Accelerometer, of("accelerometer failed", "Accels not healthy")),
+            (has_compass, Subject::Magnetometer, of("magnetometer failed", "Compass 1 not healthy")),
             (health.barometer, Subject::Barometer, "barometer failed"),
             (!place || lacks_aid.is_none(), Subject::Gps, lacks_aid.unwrap_or_default()),
             (aligned, Subject::Attitude, "attitude not aligned yet"),
@@ -223,7 +224,7 @@ impl Perception {
             (
                 !aligned || !place || knows_place && !(ardupilot && lacks_aid.is_some()),
                 Subject::Position,
-                if ardupilot { "Need Position Estimate" } else { "no position estimate" },
+                of("no position estimate", "Need Position Estimate"),
             ),
             (!aligned || !height || validity.vertical_position, Subject::Position, "no height estimate"),
         ];

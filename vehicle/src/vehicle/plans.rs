@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::mission::{Beginning, PlannedLeg, planned_way};
+use super::mission::{Beginning, PlannedLeg, height_without_m, planned_way};
 use super::situation::Situation;
 use crate::fence::{Breach, Fence, Zones};
 use crate::plan::step::Navigate;
@@ -113,7 +113,7 @@ pub fn keeps_inside(situation: &Situation, program: &Program, from_here: bool) -
     let beginning = Beginning {
         home_m,
         from_m: before_m,
-        takeoff_height_m: situation.conduct.takeoff_height_m,
+        takeoff_height_m: height_without_m(situation),
         terrain: situation.terrain,
         grounded: !situation.flies(),
     };

@@ -5,22 +5,26 @@ use mavlink::dialects::ardupilotmega::{
     SCALED_IMU_DATA, SCALED_PRESSURE_DATA, SCALED_PRESSURE2_DATA, SCALED_PRESSURE3_DATA, VIBRATION_DATA,
 };
 use nalgebra::Vector3;
+use num_traits::FromPrimitive;
 use quadrotor::GRAVITY_M_S2;
 use vehicle::Vehicle;
-use vehicle::estimation::Readings;
 use vehicle::estimation::gps::{HORIZONTAL_DILUTION, VERTICAL_DILUTION};
 use vehicle::estimation::inertial::{ACCELEROMETER_COUNTS_PER_M_S2, GYROSCOPE_COUNTS_PER_RAD_S};
 use vehicle::estimation::magnetometer::COUNTS_PER_GAUSS;
+use vehicle::estimation::{FIX_3D, Readings};
 use vehicle::world::{atmospheric_temperature_degc, heading_deg};
 
 use crate::codec::{boot_ms, scaled_degrees};
 
 /// GPS_RAW_INT: the latest fix, if it is young enough to be one.
 pub fn gps_raw_int(vehicle: &Vehicle) -> MavMessage {
+    let told = vehicle.conduct().simulated.errors.gps_fix_type;
     let Some(fix) = vehicle.readings().gps.filter(|fix| fix.is_fresh(vehicle.time_us())) else {
         return MavMessage::GPS_RAW_INT(GPS_RAW_INT_DATA {
             time_usec: vehicle.time_us(),
-            fix_type: GpsFixType::GPS_FIX_TYPE_NO_FIX,
+            fix_type: GpsFixType::from_u8(told)
+                .filter(|_| told < FIX_3D)
+                .unwrap_or(GpsFixType::GPS_FIX_TYPE_NO_FIX),
             // Unknown.
             eph: u16::MAX,
             epv: u16::MAX,
@@ -49,7 +53,7 @@ pub fn gps_raw_int(vehicle: &Vehicle) -> MavMessage {
         epv: hundredths(VERTICAL_DILUTION),
         vel: speed,
         cog: course,
-        fix_type: GpsFixType::GPS_FIX_TYPE_3D_FIX,
+        fix_type: GpsFixType::from_u8(told).unwrap_or(GpsFixType::GPS_FIX_TYPE_3D_FIX),
         satellites_visible: fix.satellites,
         alt_ellipsoid: altitude_mm,
         h_acc: millimetres(fix.horizontal_accuracy_m),

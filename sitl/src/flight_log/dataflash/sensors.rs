@@ -8,9 +8,8 @@ use super::field::{Field, field, instance};
 use crate::flight_log::LogSource;
 use crate::flight_log::source::LoggedFix;
 
-/// ArduPilot's numbers of the kinds of a fix.
+/// ArduPilot's number of no fix.
 const NO_FIX: f64 = 1.0;
-const FIX_3D: f64 = 3.0;
 /// From 1970 to the begin of GPS time, with the leap seconds since then, s.
 const GPS_EPOCH_S: u64 = 315_964_800 - 18;
 pub const WEEK_MS: u64 = 7 * 24 * 3600 * 1000;
@@ -42,7 +41,7 @@ fn inertial(source: &LogSource<'_>) -> ([f64; 3], [f64; 3]) {
 /// The receiver.
 pub const GPS: &[Field] = &[
     instance("I"),
-    field("Status", 'B', '-', '-', |source| if source.fix().is_some() { FIX_3D } else { NO_FIX }),
+    field("Status", 'B', '-', '-', |source| source.fix().map_or(NO_FIX, |fix| f64::from(fix.kind))),
     field("GMS", 'I', 's', 'C', |source| (gps_ms(source) % WEEK_MS) as f64),
     field("GWk", 'H', '-', '-', |source| (gps_ms(source) / WEEK_MS) as f64),
     field("NSats", 'B', 'S', '0', |source| of_fix(source, |fix| f64::from(fix.satellites))),

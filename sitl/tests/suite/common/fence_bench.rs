@@ -11,6 +11,7 @@ use super::Bench;
 /// Answers to commands (MAV_RESULT).
 pub const TEMPORARILY_REJECTED: u8 = 1;
 pub const DENIED: u8 = 2;
+pub const FAILED: u8 = 4;
 
 /// An item of a fence, or a rally point, at a place north and east of the origin, m.
 pub fn item(

@@ -233,3 +233,41 @@ fn the_estimator_has_three_sets_of_sources() {
         assert_eq!(flier.command(MavCmd::MAV_CMD_SET_EKF_SOURCE_SET, parameters), result as u8, "{set}");
     }
 }
+
+/// Suite: GPSFixTypes. The receiver tells the kind of its fix; one without a height is no place.
+#[test]
+fn the_receiver_tells_the_kind_of_its_fix() {
+    let mut flier = with_instruments();
+    flier.fly(10.0);
+    flier.change_mode(LOITER);
+    for fix in (0..=6).rev() {
+        flier.set("SIM_GPS1_FIXTYPE", f64::from(fix));
+        flier.bench.heard.clear();
+        flier.fly(2.0);
+        let told = flier.latest(|message| match message {
+            MavMessage::GPS_RAW_INT(gps) => Some((gps.fix_type as u32, gps.lat != 0)),
+            _ => None,
+        });
+        assert_eq!(told, Some((fix, fix >= 3)));
+    }
+    flier.fly(10.0);
+    assert!(flier.obstacles().iter().any(|text| text.contains("GPS")), "{:?}", flier.obstacles());
+    flier.set("SIM_GPS1_FIXTYPE", 6.0);
+    flier.fly(10.0);
+    flier.arm();
+}
+
+/// Suite: CompassHealthArming. A compass that fails forbids arming, unless its check is left out.
+#[test]
+fn a_single_check_can_be_left_out() {
+    let mut flier = with_instruments();
+    flier.fly(10.0);
+    flier.set("SIM_MAG1_FAIL", 1.0);
+    flier.fly(3.0);
+    assert_eq!(flier.obstacles(), ["PreArm: Compass 1 not healthy"]);
+    let arming = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, arming), FAILED);
+    flier.set("ARMING_SKIPCHK", 4.0);
+    assert!(flier.obstacles().is_empty());
+    flier.arm();
+}

@@ -364,3 +364,32 @@ fn a_circle_around_home_is_ardupilots() {
     bench.heard = heard;
     assert!(bench.texts().iter().any(|text| text.contains("GF_MAX_HOR_DIST")), "{:?}", bench.texts());
 }
+
+/// Suite: FenceMargin. Borders that come near are told, then the fence acts, and on the way back the margin is left.
+#[test]
+fn borders_that_come_near_are_told() {
+    let mut start = settings(Identity::ArduPilot);
+    let corners = [(-110.0, -110.0), (110.0, -110.0), (110.0, 110.0), (-110.0, 110.0)];
+    let rows = corners.map(|(north_m, east_m)| (5001, north_m, east_m, 0.0));
+    let mut items = mission(&start, &rows).items()[1..].to_vec();
+    items.iter_mut().for_each(|item| item.parameters[0] = 4.0);
+    start.plans.set(PlanKind::Fence, Plan::new(items));
+    let mut flier = Flier::with(&start);
+    flier.set_all(&[
+        ("FENCE_ENABLE", 1.0),
+        ("FENCE_TYPE", 6.0),
+        ("FENCE_MARGIN", 45.0),
+        ("FENCE_RADIUS", 150.0),
+        ("AVOID_ENABLE", 0.0),
+        ("FENCE_OPTIONS", 4.0),
+    ]);
+    flier.take_off(10.0, LOITER);
+    flier.rc(4, 1580);
+    flier.wait_heading(160.0);
+    flier.rc(4, 1500);
+    flier.rc(2, 1100);
+    flier.wait_text("Polygon fence in 4", 30.0);
+    flier.wait_text("Circle and Polygon fences in ", 30.0);
+    flier.wait_mode(RTL, 30.0);
+    flier.wait_text("Circle fence cleared margin breach", 60.0);
+}

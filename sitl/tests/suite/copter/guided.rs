@@ -165,3 +165,49 @@ fn a_reposition_leaves_other_modes_alone_unless_it_may_change_them() {
     // There it is a target like another.
     assert_eq!(flier.command(MavCmd::MAV_CMD_DO_REPOSITION, with(0.0)), ACCEPTED);
 }
+
+/// Suite: GuidedRejectOutsideFence.
+#[test]
+fn a_place_beyond_the_fence_fails() {
+    let mut flier = Flier::new();
+    flier.set_all(&[
+        ("FENCE_TYPE", 2.0),
+        ("FENCE_RADIUS", 50.0),
+        ("FENCE_ACTION", 0.0),
+        ("FENCE_ENABLE", 1.0),
+    ]);
+    flier.take_off(10.0, GUIDED);
+    let home = crate::common::settings(vehicle::identity::Identity::ArduPilot).origin;
+    for (north_m, result) in [(10.0, ACCEPTED), (200.0, FAILED)] {
+        flier.bench.heard.clear();
+        flier.bench.send(MavMessage::COMMAND_INT(COMMAND_INT_DATA {
+            target_system: 1,
+            target_component: 1,
+            command: MavCmd::MAV_CMD_DO_REPOSITION,
+            frame: MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT,
+            x: ((home.latitude_deg + north_m / 111_194.9) * 1e7) as i32,
+            y: (home.longitude_deg * 1e7) as i32,
+            z: 10.0,
+            ..COMMAND_INT_DATA::default()
+        }));
+        let acks = flier.bench.acks();
+        assert_eq!(acks.last().map(|ack| ack.result), Some(result), "{north_m} m: {:?}", flier.bench.texts());
+    }
+}
+
+/// A turn keeps to the rate that it is asked for, from rest to rest.
+#[test]
+fn a_turn_keeps_to_its_rate() {
+    let mut flier = Flier::new();
+    flier.take_off(10.0, GUIDED);
+    flier.fly(5.0);
+    let turn = [180.0, 30.0, 1.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_CONDITION_YAW, turn), ACCEPTED);
+    let mut fastest_deg_s = 0.0_f64;
+    for _ in 0..110 {
+        flier.fly(0.1);
+        fastest_deg_s = fastest_deg_s.max(flier.vehicle().outputs().body_rate_rad_s.z.to_degrees());
+    }
+    assert!((29.0..32.5).contains(&fastest_deg_s), "{fastest_deg_s}");
+    assert!(flier.heads(180.0, 2.0), "{}", flier.heading_deg());
+}

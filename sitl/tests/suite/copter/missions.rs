@@ -272,3 +272,63 @@ fn a_mission_that_is_flown_cannot_be_cleared() {
     flier.change_mode(LOITER);
     assert_eq!(clear(&mut flier), MavMissionResult::MAV_MISSION_ACCEPTED);
 }
+
+/// Suite: FlyMissionTwice, FlyMissionTwiceWithReset. Armed in Auto again, the vehicle flies its mission again.
+#[test]
+fn a_mission_is_flown_twice_without_leaving_its_mode() {
+    for resets in [false, true] {
+        let mut flier =
+            with_mission(&[(TAKEOFF, 0.0, 0.0, 8.0), (WAYPOINT, 20.0, 0.0, 8.0), (RETURN, 0.0, 0.0, 0.0)]);
+        flier.change_mode(AUTO);
+        for _ in 0..2 {
+            if resets {
+                let anew = [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+                assert_eq!(flier.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, anew), ACCEPTED);
+            }
+            flier.arm();
+            flier.wait("the waypoint", 60.0, |flier| flier.distance_m() > 15.0);
+            flier.wait_home();
+            flier.fly(1.0);
+            assert_eq!(flier.mode(), AUTO);
+        }
+    }
+}
+
+/// Suite: TakeoffAlt. A takeoff below the ground climbs by one metre, and one below the vehicle leaves it where it is.
+#[test]
+fn a_takeoff_below_the_ground_lifts_off() {
+    for (flies, height_m) in [(false, 1.0), (true, 10.0)] {
+        let mut flier =
+            with_mission(&[(TAKEOFF, 0.0, 0.0, -10.0), (command::NAV_LOITER_UNLIM, 0.0, 0.0, 0.0)]);
+        flier.change_mode(GUIDED);
+        if flies {
+            flier.take_off(10.0, GUIDED);
+            flier.fly(5.0);
+        } else {
+            flier.arm();
+        }
+        flier.change_mode(AUTO);
+        flier.rc(3, 1500);
+        flier.wait("the last item", 20.0, |flier| flier.vehicle().mission_status().current == 2);
+        flier.fly(3.0);
+        assert!((flier.height_m() - height_m).abs() < 0.5, "{} m", flier.height_m());
+    }
+}
+
+/// Suite: TerrainFailsafe. Armed by force, a mission above a ground that nothing tells of returns.
+#[test]
+fn a_mission_above_an_unknown_ground_returns() {
+    let mut start = settings(Identity::ArduPilot);
+    let rows = [(TAKEOFF, 0.0, 0.0, 10.0), (WAYPOINT, 200.0, 0.0, 10.0), (RETURN, 0.0, 0.0, 0.0)];
+    let mut items = mission(&start, &rows).items().to_vec();
+    items[2].frame = vehicle::plan::frame::GLOBAL_TERRAIN_INT;
+    start.plans.set(PlanKind::Mission, vehicle::plan::Plan::new(items));
+    let mut flier = Flier::with(&start);
+    flier.set("TERRAIN_ENABLE", 0.0);
+    flier.change_mode(AUTO);
+    let by_force = [1.0, 21196.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, by_force), ACCEPTED);
+    flier.wait_text("Failsafe: Terrain", 60.0);
+    assert_eq!(flier.mode(), 6);
+    flier.wait_home();
+}

@@ -1,5 +1,7 @@
 //! What is streamed, and how often: SRn_ parameters, the groups of REQUEST_DATA_STREAM, terrain and the board.
 
+#![allow(deprecated)] // Clients still use what the dialect calls deprecated.
+
 use super::flier::*;
 use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::*;
@@ -262,4 +264,39 @@ fn raw_measurements_have_the_units_of_scaled_ones() {
     // 0.48 G near Zurich (WMM).
     let field = x.hypot(y).hypot(z);
     assert!((400.0..600.0).contains(&field), "{field} mgauss");
+}
+
+/// Tunes are shown, and their format is told.
+#[test]
+fn tunes_are_shown() {
+    let mut flier = Flier::new();
+    let ask = [SUPPORTED_TUNES_DATA::ID as f32, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(flier.command(MavCmd::MAV_CMD_REQUEST_MESSAGE, ask), ACCEPTED);
+    let format = flier.latest(|message| match message {
+        MavMessage::SUPPORTED_TUNES(tunes) => Some(tunes.format),
+        _ => None,
+    });
+    assert_eq!(format, Some(TuneFormat::TUNE_FORMAT_QBASIC1_1));
+    let tune = "MFT200L4<cdefgab>".into();
+    flier.bench.send(MavMessage::PLAY_TUNE(PLAY_TUNE_DATA {
+        target_system: 1,
+        tune,
+        ..PLAY_TUNE_DATA::default()
+    }));
+    flier.fly(0.1);
+    assert!(flier.has_said("Tune: MFT200L4<cdefgab>"), "{:?}", flier.bench.texts());
+    for (format, said) in [
+        (TuneFormat::TUNE_FORMAT_QBASIC1_1, "Tune: a2b2"),
+        (TuneFormat::TUNE_FORMAT_MML_MODERN, "Tune rejected: only format 1"),
+    ] {
+        let tune = PLAY_TUNE_V2_DATA {
+            target_system: 1,
+            format,
+            tune: "a2b2".into(),
+            ..PLAY_TUNE_V2_DATA::default()
+        };
+        flier.bench.send(MavMessage::PLAY_TUNE_V2(tune));
+        flier.fly(0.1);
+        assert!(flier.has_said(said), "{:?}", flier.bench.texts());
+    }
 }

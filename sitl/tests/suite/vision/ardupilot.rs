@@ -234,3 +234,23 @@ fn sources_without_visual_odometry_keep_it_from_arming() {
     bench.fly(1.0);
     assert_eq!(obstacles(&bench), [] as [&str; 0]);
 }
+
+/// VISO_SCALE: a camera that counts in half metres.
+#[test]
+fn positions_have_the_scale_that_is_said() {
+    let mut bench = started(&ALONE);
+    set(&mut bench, "VISO_SCALE", 0.5);
+    bench.send(origin(473_977_420, 85_455_940));
+    let see = |bench: &Bench| {
+        let MavMessage::VISION_POSITION_ESTIMATE(mut estimate) = Camera::ALIGNED.estimate(bench) else {
+            unreachable!("that is what it sends")
+        };
+        (estimate.x, estimate.y, estimate.z) = (2.0 * estimate.x, 2.0 * estimate.y, 2.0 * estimate.z);
+        vec![MavMessage::VISION_POSITION_ESTIMATE(estimate), Camera::ALIGNED.speed(bench)]
+    };
+    watch(&mut bench, 4.0, see, never);
+    take_off(&mut bench, see, 5.0);
+    fly_to(&mut bench, see, [6.0, -4.0, -5.0]);
+    let truth = bench.autopilot.vehicle().truth().position_m;
+    assert!((truth - Vector3::new(6.0, -4.0, -5.0)).norm() < 0.5, "{truth}");
+}

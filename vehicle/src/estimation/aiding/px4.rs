@@ -95,6 +95,7 @@ impl Px4Aiding {
             velocity_gate: self.velocity_gate,
             delay_us: (self.delay_ms * 1e3) as u64,
             place_m: [self.place.x, self.place.y, self.place.z],
+            scale: 1.0,
             least_quality: if self.least_quality > 0 { self.least_quality } else { i8::MIN },
         };
         Aiding {

@@ -54,6 +54,8 @@ pub struct SourceSets {
     pub delay_ms: u16,
     /// Where on the vehicle the place is that estimates are of, FRD, m.
     pub place: Triple,
+    /// What positions are multiplied by (VISO_SCALE).
+    pub scale: f64,
     /// Least quality of an estimate that is used, %; −1: any.
     pub least_quality: i8,
 }
@@ -78,6 +80,7 @@ impl Default for SourceSets {
             heading_noise_rad: 0.2,
             delay_ms: 10,
             place: Triple::default(),
+            scale: 1.0,
             least_quality: 0,
         }
     }
@@ -125,6 +128,7 @@ impl SourceSets {
             velocity_gate: GATE,
             delay_us: u64::from(self.delay_ms) * 1000,
             place_m: [self.place.x, self.place.y, self.place.z],
+            scale: self.scale,
             least_quality: if self.least_quality < 0 { i8::MIN } else { self.least_quality },
         };
         let position = active.position == GPS;

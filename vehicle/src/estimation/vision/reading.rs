@@ -49,6 +49,14 @@ impl VisionReading {
     pub const NOTHING: Self =
         Self { position: None, velocity: None, attitude: None, points_north: true, resets: 0, quality: 0 };
 
+    /// With positions in other units, the variance of which is told in metres.
+    pub fn scaled(mut self, scale: f64) -> Self {
+        if let Some(position) = &mut self.position {
+            position.value *= scale;
+        }
+        self
+    }
+
     /// Whether what it says can be: finite numbers, at most 100 km away and 200 m/s fast.
     pub fn is_possible(&self) -> bool {
         let within = |measured: &Measured, most: f64| measured.value.norm() <= most;

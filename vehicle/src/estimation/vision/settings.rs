@@ -42,6 +42,8 @@ pub struct VisionSettings {
     pub delay_us: u64,
     /// Where on the vehicle the place is that estimates are of, FRD, m.
     pub place_m: [f64; 3],
+    /// What positions are multiplied by.
+    pub scale: f64,
     /// Least quality of a reading that is used, %.
     pub least_quality: i8,
 }

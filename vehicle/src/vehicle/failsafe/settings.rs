@@ -61,6 +61,9 @@ pub struct FailsafeSettings {
     /// How far inside of its borders sticks stop, m (ArduPilot: FENCE_MARGIN).
     #[serde(default)]
     pub fence_margin_m: f64,
+    /// How often the way to its borders is told within the margin, Hz; 0: once (ArduPilot: FENCE_NTF_FREQ).
+    #[serde(default = "each_second")]
+    pub fence_tells_hz: f64,
     /// Whether it is switched on by itself (ArduPilot: FENCE_AUTOENABLE).
     #[serde(default)]
     pub fence_starts: FenceStart,
@@ -79,6 +82,11 @@ pub struct FailsafeSettings {
     /// Whether it lands on the others when a rotor is lost, stops them, too, or only warns and goes on in the mode that was, as if
     /// there were four (COM_ACT_FAIL_ACT).
     pub rotor_failure: Action,
+}
+
+/// So do records of before it could be chosen.
+fn each_second() -> f64 {
+    1.0
 }
 
 /// Records of before it could be chosen have none.
@@ -288,6 +296,7 @@ impl Default for FailsafeSettings {
             fence_floor_m: -10.0,
             fence_floor_from: FenceDatum::Home,
             fence_margin_m: 0.0,
+            fence_tells_hz: each_second(),
             fence_starts: FenceStart::Never,
             wind_m_s: -1.0,
             high_wind: Action::Warn,
@@ -314,6 +323,7 @@ impl FailsafeSettings {
             fence_radius_m: 300.0,
             fence_height_m: 100.0,
             fence_margin_m: 2.0,
+            fence_tells_hz: each_second(),
             fence_options: FenceOptions { keeps_mode: true, union: false, tells_margin: false },
             ground_station_timeout_s: 5.0,
             battery: BatteryActions::WARN,

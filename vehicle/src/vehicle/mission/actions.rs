@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 
 use nalgebra::{Vector2, Vector3};
 
+use super::super::commanded_turn::heading_now;
 use super::super::notice::Severity;
 use super::super::proposal::Proposal;
 use super::super::region::RegionOfInterest;
@@ -116,8 +117,7 @@ impl Actions {
 
     /// Turns from the present heading on.
     pub fn turn_to(&mut self, turn: &Turn, situation: &Situation) {
-        let fastest_rad_s = situation.limits().yaw_rate_rad_s;
-        self.turning = Some(Turning::new(turn, situation.outputs.setpoint.yaw_rad, fastest_rad_s));
+        self.turning = Some(Turning::new(turn, heading_now(situation), situation.limits()));
     }
 }
 

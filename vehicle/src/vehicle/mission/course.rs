@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use super::super::descent::descend;
 use super::super::fence_watch::stopping_place_m;
-use super::super::motion::{at_rest, wrapped};
+use super::super::motion::at_rest;
 use super::super::notice::Severity;
 use super::super::proposal::Proposal;
 use super::super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
@@ -18,14 +18,11 @@ use super::super::tick::TICK_S;
 use super::announcement;
 use super::leg::{Guide, Leg, LegProgress, Turn, bearing_rad, is_settling};
 use super::route::Route;
-use super::takeoff_height::{climb_z_m, takeoff_z_m};
+use super::takeoff_height::{climb_z_m, height_without_m, takeoff_z_m};
 use super::task::{Lowering, Task, TaskProgress, Then, delay_end_us};
 use crate::equipment::Operation;
 use crate::plan::Place;
 use crate::plan::step::Navigate;
-
-/// So near to its heading, rad, the nose is there: MIS_YAW_ERR, 12°.
-const FACING_RAD: f64 = 0.21;
 
 /// What is being done for the present step.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -272,7 +269,7 @@ impl Course {
         proposal: &mut Proposal,
     ) -> TaskProgress {
         let home_z_m = proposal.home().position_m.z;
-        let z_m = takeoff_z_m(place, home_z_m, situation.conduct.takeoff_height_m);
+        let z_m = takeoff_z_m(place, home_z_m, height_without_m(situation));
         let grounded = proposal.steering().kind() == SteeringKind::Idle;
         if !grounded && situation.outputs.setpoint.position_m.z <= z_m {
             return self.leave_takeoff(step, route, situation);
@@ -402,9 +399,21 @@ impl Course {
                 self.anchor_m = leg.to_m;
                 return TaskProgress::Done(Some(turn));
             }
+            LegProgress::Arrived if self.waits_for_heading(then, situation, proposal) => {
+                return TaskProgress::Going;
+            }
             LegProgress::Arrived => self.anchor_m = leg.to_m,
         }
         self.arrive(then, situation, proposal)
+    }
+
+    /// Whether a waypoint is not left yet, as the nose does not point where that asks for.
+    fn waits_for_heading(&self, then: Then, situation: &Situation, proposal: &Proposal) -> bool {
+        matches!(then, Then::Wait(_))
+            && self.heading_is_asked
+            && !situation.identity.is_ardupilot()
+            && situation.conduct.mission_heading.waits()
+            && !faces(situation, proposal)
     }
 
     /// What comes at the end of a way at which the vehicle rests.
@@ -430,12 +439,12 @@ impl Course {
     }
 }
 
-/// Whether the nose is where it is turned to, by whomever: PX4 waits for no more, either.
+/// Whether the nose is where it is turned to, by whomever.
 fn faces(situation: &Situation, proposal: &Proposal) -> bool {
     let wanted_rad = match proposal.steering() {
         Steering::Goal(goal) => goal.yaw_rad,
         Steering::Path(path) => path.goal().yaw_rad,
         _ => return true,
     };
-    wrapped(wanted_rad - situation.outputs.attitude_rad.z).abs() < FACING_RAD
+    situation.conduct.mission_heading.is_met(wanted_rad, situation.outputs.attitude_rad.z)
 }

@@ -275,9 +275,11 @@ impl Mission {
         }
     }
 
-    /// The vehicle is armed in its mode, which may have stayed from the flight before.
+    /// The vehicle is armed in its mode, which may have stayed from the flight before: what is complete is flown again.
     pub fn arm(&mut self, situation: &Situation, proposal: &mut Proposal) {
-        if self.progress != Progress::Complete {
+        if self.progress == Progress::Complete {
+            self.begin(situation, proposal);
+        } else {
             self.take_over(situation, proposal);
         }
     }

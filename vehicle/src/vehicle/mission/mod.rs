@@ -37,4 +37,5 @@ pub use machine::Mission;
 pub use planned_way::{Beginning, PlannedLeg, planned_way};
 pub use route::Route;
 pub use status::{MissionState, MissionStatus};
+pub use takeoff_height::height_without_m;
 pub use task::{Helm, TaskProgress};

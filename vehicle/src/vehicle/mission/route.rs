@@ -5,13 +5,14 @@ use quadrotor::Limits;
 
 use super::super::ground_way::{GroundWay, PLACES_AHEAD, leads_along_ground};
 use super::super::heading_policy::HeadingPolicy;
+use super::super::mission_heading::MissionHeading;
 use super::super::proposal::Proposal;
 use super::super::situation::Situation;
 use super::super::spline::CurvePlaces;
 use super::super::trajectory::Blend;
 use super::circle_turns::CircleTurns;
 use super::jumps::Jumps;
-use super::leg::{Leg, Turn, is_at_rest};
+use super::leg::{Leg, Turn, bearing_rad, is_at_rest};
 use super::leg_end::{circle, leg_end_m, place_m};
 use super::path::{Corner, Start, Stop, first_corner};
 use crate::fence::Fence;
@@ -38,6 +39,10 @@ pub struct Route<'a> {
     terrain: &'a Terrain,
     /// Whether the nose points to a place before it is flown to.
     faces_first: bool,
+    /// How headings that waypoints ask for are waited for, if they are.
+    waits_for: Option<MissionHeading>,
+    /// Heading now, rad.
+    yaw_rad: f64,
 }
 
 impl<'a> Route<'a> {
@@ -59,6 +64,9 @@ impl<'a> Route<'a> {
             fence: situation.fence(),
             terrain: situation.terrain,
             faces_first: HeadingPolicy::of(situation) == HeadingPolicy::NextPlaceFirst,
+            waits_for: Some(situation.conduct.mission_heading)
+                .filter(|heading| heading.waits() && !situation.identity.is_ardupilot()),
+            yaw_rad: situation.outputs.attitude_rad.z,
         }
     }
 
@@ -195,6 +203,7 @@ impl<'a> Route<'a> {
     fn stops(&self, from_m: &Vector3<f64>) -> Vec<Stop> {
         let mut jumps = self.jumps.clone();
         let (mut next, mut from_m) = (Some(self.current), *from_m);
+        let mut yaw_rad = self.yaw_rad;
         let mut stops = Vec::new();
         while let Some(index) = next.filter(|_| stops.len() < AHEAD) {
             let Some(step) = self.program.navigate(index) else { break };
@@ -204,15 +213,25 @@ impl<'a> Route<'a> {
             let curves = follows
                 .and_then(|index| self.program.navigate(index))
                 .is_some_and(|step| matches!(step, Navigate::Spline { .. }) || self.follows_ground(&step));
-            let rests = curves || self.faces_first || self.rests_at(index, &step);
+            let heading_rad = asked_heading_rad(&step);
+            let turns = heading_rad
+                .is_some_and(|heading_rad| self.turn_outlasts(heading_rad - yaw_rad, &(position_m - from_m)));
+            let rests = curves || turns || self.faces_first || self.rests_at(index, &step);
             stops.push(Stop { position_m, radius_m: self.acceptance_radius_m(&step), rests });
             if rests {
                 break;
             }
             next = follows;
+            yaw_rad = heading_rad.or_else(|| bearing_rad(&from_m, &position_m)).unwrap_or(yaw_rad);
             from_m = position_m;
         }
         stops
+    }
+
+    /// Whether a turn, rad, that a waypoint asks for is not over before its way is, NED, m: then the vehicle rests there until it is.
+    fn turn_outlasts(&self, turn_rad: f64, way_m: &Vector3<f64>) -> bool {
+        let way_s = way_m.norm() / self.limits.speed_horizontal_m_s;
+        self.waits_for.is_some_and(|heading| heading.outlasts(turn_rad, self.limits.yaw_rate_rad_s, way_s))
     }
 
     /// Whether the nose points to a place before it is flown to.
@@ -234,5 +253,13 @@ impl<'a> Route<'a> {
             _ => None,
         };
         own_m.unwrap_or(self.radius_m)
+    }
+}
+
+/// The heading that a waypoint asks for, rad.
+fn asked_heading_rad(step: &Navigate) -> Option<f64> {
+    match step {
+        Navigate::Waypoint(waypoint) => waypoint.heading_rad,
+        _ => None,
     }
 }

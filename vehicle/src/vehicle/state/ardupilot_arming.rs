@@ -4,7 +4,7 @@ use super::super::arming_obstacle::{ArmingObstacle, ArmingSubject as Subject};
 use super::super::situation::Situation;
 use super::Vehicle;
 use crate::kept::KeptValues;
-use crate::mode::Needs;
+use crate::mode::{Mode, Needs};
 use crate::plan::{PlanKind, command, is_above_ground};
 use crate::radio::{RadioFailure, RadioLossAction};
 
@@ -51,12 +51,28 @@ impl Vehicle {
 
     /// A mission above the ground, which ArduPilot knows from its terrain data or from a rangefinder, where neither is to be used.
     fn terrain_obstacle(&self) -> Option<&'static str> {
-        let is_on = |id: &str| self.conduct().kept.by_id(id).is_some_and(|value| value != 0.0);
-        let rangefinder = is_on("WP_RFND_USE") && is_on("WPNAV_RFND_USE") && self.has_rangefinder();
-        let known = is_on("TERRAIN_ENABLE") || rangefinder;
         let items = self.plans().get(PlanKind::Mission).items();
         let wanted = items.iter().skip(1).any(|item| is_above_ground(item.frame));
-        (wanted && !known).then_some("Mission above the terrain, and terrain disabled")
+        (wanted && !self.knows_the_ground()).then_some("Mission above the terrain, and terrain disabled")
+    }
+
+    fn knows_the_ground(&self) -> bool {
+        let is_on = |id: &str| self.conduct().kept.by_id(id).is_some_and(|value| value != 0.0);
+        let rangefinder = || is_on("WP_RFND_USE") && is_on("WPNAV_RFND_USE") && self.has_rangefinder();
+        is_on("TERRAIN_ENABLE") || rangefinder()
+    }
+
+    /// Looks at the ground of a mission that is flown.
+    pub(super) fn watch_terrain(&mut self) {
+        const PERIOD_US: u64 = 100_000;
+        if !self.time_us().is_multiple_of(PERIOD_US) || !self.identity().is_ardupilot() {
+            return;
+        }
+        let flies = self.is_armed() && !self.situation().landed && self.mode() == Mode::Mission;
+        let current = self.mission_status().current;
+        let item = self.plans().get(PlanKind::Mission).items().get(current).filter(|_| flies);
+        let is_unknown = item.is_some_and(|item| is_above_ground(item.frame)) && !self.knows_the_ground();
+        self.consult(|parts, situation, proposal| parts.terrain.watch(situation, proposal, is_unknown));
     }
 
     /// Items that ARMING_MIS_ITEMS asks for, and that there are not.

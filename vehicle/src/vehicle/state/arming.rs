@@ -21,6 +21,8 @@ impl Vehicle {
                 obstacles.retain(|obstacle| obstacle.subject.is_of_mode());
             } else {
                 obstacles.extend(self.ardupilot_obstacles());
+                let settings = &self.conduct().arming;
+                obstacles.retain(|obstacle| !settings.skips(obstacle.subject));
             }
         }
         let safety = self.machines.safety.obstacle();

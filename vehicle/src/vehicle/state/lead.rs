@@ -34,6 +34,10 @@ impl Vehicle {
         self.consult_in_turn(&mut [
             &mut |parts, situation, proposal| look(parts, situation, proposal, &crossed),
             &mut |parts, situation, proposal| {
+                parts.fence_margin.watch(situation, proposal);
+                Shown::Still
+            },
+            &mut |parts, situation, proposal| {
                 if let Some(breach) = crossed.take() {
                     parts.failsafe.tell_crossing(situation, proposal, breach);
                 }
@@ -75,6 +79,7 @@ impl Vehicle {
                 parts.vibration.watch(situation, proposal, restarted_us);
             });
         }
+        self.watch_terrain();
         if self.conduct().precision.enabled {
             self.consult(|parts, situation, proposal| parts.precision.watch(situation, proposal));
         }

@@ -10,7 +10,9 @@ use super::super::fence_watch::FenceRecord;
 use super::super::flight_times::FlightTimes;
 use super::super::home::Home;
 use super::super::landed::LandedState;
-use super::super::mission::{Beginning, MissionState, MissionStatus, PlannedLeg, planned_way};
+use super::super::mission::{
+    Beginning, MissionState, MissionStatus, PlannedLeg, height_without_m, planned_way,
+};
 use super::super::orbit_request::OrbitStatus;
 use super::super::set_point::PositionSetPoint;
 use super::super::speeds::with_speeds;
@@ -318,7 +320,7 @@ impl Vehicle {
         let beginning = Beginning {
             home_m: self.home().position_m,
             from_m: self.home().position_m,
-            takeoff_height_m: self.conduct().takeoff_height_m,
+            takeoff_height_m: height_without_m(&self.situation()),
             terrain: self.terrain(),
             grounded: true,
         };

@@ -307,7 +307,11 @@ impl Vehicle {
         let [x, y] = goal.horizontal_m.unwrap_or([now.x, now.y]);
         let target = Vector3::new(x, y, goal.down_m.unwrap_or(now.z));
         check_distance(&target)?;
-        check_goal(&situation, "Reposition", &target)?;
+        check_goal(&situation, "Reposition", &target).map_err(|refusal| match refusal {
+            // ArduPilot's answer.
+            Refusal::Denied(reason) if situation.identity.is_ardupilot() => Refusal::Failed(reason),
+            refusal => refusal,
+        })?;
         self.machines.failsafe.release();
         let offboard = &self.machines.offboard;
         let looks = mode == self.mode() && offboard.lead() == Some(Lead::Command) && offboard.looks();

@@ -92,7 +92,7 @@ impl Vehicle {
             return Err(VisionRefusal::NotUsed);
         }
         settings.check(&reading)?;
-        self.perception.receive_vision(reading);
+        self.perception.receive_vision(reading.scaled(settings.scale));
         Ok(())
     }
 
