@@ -161,9 +161,9 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
 
     /// The one through the most samples, up to all, that leaves no more than the noise; or else that through the recent ones.
     fn longest_fit(&self, recent: PolynomialFit<AXES>, time_us: u64) -> PolynomialFit<AXES> {
-        let variance = self.noise.variance();
+        let (variance, fitted) = (self.noise.variance(), self.recent());
         let mut longest = recent;
-        for count in [(self.recent() + self.count) / 2, self.count] {
+        for count in [(fitted + self.count) / 2, self.count].into_iter().filter(|count| *count > fitted) {
             match PolynomialFit::new(self.newest(count), variance, time_us) {
                 Some(fit) if fit.left <= AS_NOISE * variance => longest = fit,
                 _ => break,

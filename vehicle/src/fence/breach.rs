@@ -70,8 +70,22 @@ impl Fence<'_> {
         zones || self.radius_m > 0.0 || self.height_m > 0.0
     }
 
-    /// Whether a zone has to be kept to whatever the others are: of several to stay in, one may be enough.
-    pub fn holds_alone(&self, zone: &Zone) -> bool {
+    /// The zones that have to be kept to whatever the others are: of several to stay in, one may be enough.
+    pub fn zones_alone(&self) -> impl Iterator<Item = &Zone> {
+        self.all_zones().filter(|zone| self.holds_alone(zone))
+    }
+
+    /// The room at a point in that of the other zones which has the most, m: it is enough to be in one. `None` without any.
+    pub fn room_in_any_m(&self, point: [f64; 2]) -> Option<f64> {
+        let others = self.all_zones().filter(|zone| !self.holds_alone(zone));
+        others.map(|zone| zone.room_m(point)).max_by(f64::total_cmp)
+    }
+
+    fn all_zones(&self) -> impl Iterator<Item = &Zone> {
+        self.zones.iter().flat_map(|zones| &zones.zones)
+    }
+
+    fn holds_alone(&self, zone: &Zone) -> bool {
         !zone.inclusion || self.inclusions == Inclusions::All
     }
 

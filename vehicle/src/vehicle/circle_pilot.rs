@@ -76,14 +76,11 @@ fn forward_right(situation: &Situation) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::{CHANGE_RAD_S2, CirclePilot};
-    use crate::identity::Identity;
-    use crate::vehicle::Conduct;
     use crate::vehicle::scene::Scene;
     use crate::vehicle::sticks::Sticks;
 
     fn circling(sticks: Sticks) -> Scene {
-        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
-        (scene.identity, scene.conduct) = (Identity::ArduPilot, Conduct::new(true));
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]).of_ardupilot();
         scene.pilot.sticks = Some(sticks);
         scene
     }

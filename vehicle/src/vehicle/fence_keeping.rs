@@ -88,8 +88,7 @@ fn kept_once(situation: &Situation, fence: &Fence, mut velocity: Vector2<f64>) -
     if fence.radius_m > 0.0 {
         keep(&|place| fence.radius_m - (place - fence.home_m.xy()).norm());
     }
-    let zones = || fence.zones.iter().flat_map(|zones| &zones.zones);
-    for zone in zones().filter(|zone| fence.holds_alone(zone)) {
+    for zone in fence.zones_alone() {
         match &zone.shape {
             Shape::Polygon(polygon) if !zone.forbids(here.into()) => {
                 for side in polygon.sides() {
@@ -99,10 +98,8 @@ fn kept_once(situation: &Situation, fence: &Fence, mut velocity: Vector2<f64>) -
             _ => keep(&|place| zone.room_m(place.into())),
         }
     }
-    // It is enough to be in one of the others: that with the most room.
-    if zones().any(|zone| !fence.holds_alone(zone)) {
-        let others = || zones().filter(|zone| !fence.holds_alone(zone));
-        keep(&|place| others().map(|zone| zone.room_m(place.into())).fold(f64::NEG_INFINITY, f64::max));
+    if fence.room_in_any_m(here.into()).is_some() {
+        keep(&|place| fence.room_in_any_m(place.into()).unwrap_or(f64::NEG_INFINITY));
     }
     velocity
 }
@@ -141,14 +138,11 @@ pub(super) fn allowed_m_s(situation: &Situation, room_m: f64, acceleration_m_s2:
 mod tests {
     use super::{AxisTarget, PositionSetPoint, keep_inside};
     use crate::fence::{Polygon, Shape, Zone};
-    use crate::identity::Identity;
-    use crate::vehicle::Conduct;
     use crate::vehicle::scene::Scene;
     use crate::vehicle::set_point::YawTarget;
 
     fn scene() -> Scene {
-        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
-        (scene.identity, scene.conduct) = (Identity::ArduPilot, Conduct::new(true));
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]).of_ardupilot();
         let settings = &mut scene.conduct.failsafe;
         (settings.fence_enabled, settings.fence_radius_m, settings.fence_height_m) = (true, 15.0, 30.0);
         settings.fence_margin_m = 3.0;

@@ -87,10 +87,8 @@ fn rooms_m(situation: &Situation, fence: &Fence) -> [Option<f64>; 4] {
 
 /// Of the zones: the least room, but of zones of which one is enough the most.
 fn zones_room_m(fence: &Fence, here: Vector2<f64>) -> Option<f64> {
-    let zones = || fence.zones.iter().flat_map(|zones| &zones.zones);
-    let alone = zones().filter(|zone| fence.holds_alone(zone)).map(|zone| zone.room_m(here.into()));
-    let others = zones().filter(|zone| !fence.holds_alone(zone)).map(|zone| zone.room_m(here.into()));
-    alone.chain(others.max_by(f64::total_cmp)).min_by(f64::total_cmp)
+    let alone = fence.zones_alone().map(|zone| zone.room_m(here.into()));
+    alone.chain(fence.room_in_any_m(here.into())).min_by(f64::total_cmp)
 }
 
 /// “Circle fence”, “Circle and Polygon fences”, “Max Alt, Circle and Polygon fences”.
@@ -107,14 +105,11 @@ fn names(near: &[bool; 4]) -> String {
 mod tests {
     use super::{FenceMargin, PERIOD_US, names};
     use crate::fence::{Polygon, Shape, Zone};
-    use crate::identity::Identity;
-    use crate::vehicle::Conduct;
     use crate::vehicle::scene::{Scene, said};
 
     /// A circle of 150 m and a square of 110 m to each side, as ArduPilot's own test has them, with a margin of 45 m.
     fn scene() -> Scene {
-        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
-        (scene.identity, scene.conduct) = (Identity::ArduPilot, Conduct::new(true));
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]).of_ardupilot();
         let settings = &mut scene.conduct.failsafe;
         (settings.fence_enabled, settings.fence_radius_m) = (true, 150.0);
         (settings.fence_margin_m, settings.fence_options.tells_margin) = (45.0, true);
@@ -164,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn several_borders_are_named_as_ardupilot_names_them() {
+    fn several_borders_are_named_of_ardupilot_names_them() {
         assert_eq!(names(&[true, true, true, false]), "Max Alt, Circle and Polygon fences");
         assert_eq!(names(&[false, false, false, true]), "Min Alt fence");
     }

@@ -41,13 +41,10 @@ pub fn reaches(situation: &Situation) -> bool {
 #[cfg(test)]
 mod tests {
     use super::ParachuteWatch;
-    use crate::identity::Identity;
-    use crate::vehicle::Conduct;
     use crate::vehicle::scene::Scene;
 
     fn scene(height_m: f64) -> Scene {
-        let mut scene = Scene::hovering_at([0.0, 0.0, -height_m]);
-        (scene.identity, scene.conduct) = (Identity::ArduPilot, Conduct::new(true));
+        let mut scene = Scene::hovering_at([0.0, 0.0, -height_m]).of_ardupilot();
         scene.conduct.equipment.parachute.enabled = true;
         scene
     }

@@ -47,14 +47,11 @@ impl PilotTakeoff {
 #[cfg(test)]
 mod tests {
     use super::PilotTakeoff;
-    use crate::identity::Identity;
-    use crate::vehicle::Conduct;
     use crate::vehicle::scene::Scene;
 
     /// A scene on the ground, with a height of 7 m.
     fn scene() -> Scene {
-        let mut scene = Scene::on_the_ground();
-        (scene.identity, scene.conduct) = (Identity::ArduPilot, Conduct::new(true));
+        let mut scene = Scene::on_the_ground().of_ardupilot();
         scene.conduct.pilot_takeoff_m = 7.0;
         scene
     }

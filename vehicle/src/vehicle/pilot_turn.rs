@@ -97,14 +97,12 @@ fn may_turn(situation: &Situation) -> bool {
 mod tests {
     use super::{IGNORED, Mode, may_turn};
     use crate::identity::Identity;
-    use crate::vehicle::Conduct;
     use crate::vehicle::scene::Scene;
 
     /// Options of each mode say whether the yaw stick counts; LAND_REPOSITION does on the way down.
     #[test]
     fn options_of_the_mode_decide_whether_the_stick_turns() {
-        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
-        (scene.identity, scene.conduct) = (Identity::ArduPilot, Conduct::new(true));
+        let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]).of_ardupilot();
         let may = |scene: &Scene, mode: Mode, comes_down: bool| {
             may_turn(&super::Situation { mode, comes_down, ..scene.situation() })
         };

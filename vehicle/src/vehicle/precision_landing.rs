@@ -157,14 +157,11 @@ mod tests {
     use core::f64::consts::FRAC_PI_2;
 
     use super::{PrecisionLanding, Sighting, Vector3};
-    use crate::identity::Identity;
-    use crate::vehicle::Conduct;
     use crate::vehicle::precision_settings::{BeaconBeam, PrecisionSettings};
     use crate::vehicle::scene::{Scene, said};
 
     fn scene(sensor: u8) -> Scene {
-        let mut scene = Scene::hovering_at([3.0, 4.0, -10.0]);
-        (scene.identity, scene.conduct) = (Identity::ArduPilot, Conduct::new(true));
+        let mut scene = Scene::hovering_at([3.0, 4.0, -10.0]).of_ardupilot();
         scene.conduct.precision =
             PrecisionSettings { enabled: true, sensor, simulated: true, ..PrecisionSettings::default() };
         scene.wait_us(40_000);

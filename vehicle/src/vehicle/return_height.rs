@@ -57,8 +57,6 @@ fn px4_height_m(situation: &Situation, distance_m: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::way_z_m;
-    use crate::identity::Identity;
-    use crate::vehicle::conduct::Conduct;
     use crate::vehicle::scene::Scene;
 
     /// Height above home, m, at which it flies home.
@@ -89,9 +87,7 @@ mod tests {
     }
 
     fn ardupilot(position_m: [f64; 3]) -> Scene {
-        let mut scene = Scene::hovering_at(position_m);
-        (scene.identity, scene.conduct) = (Identity::ArduPilot, Conduct::new(true));
-        scene
+        Scene::hovering_at(position_m).of_ardupilot()
     }
 
     #[test]

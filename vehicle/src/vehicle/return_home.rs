@@ -326,9 +326,7 @@ fn goal_is_reached(situation: &Situation, steering: &Steering) -> bool {
 mod tests {
     use super::{Return, safe_points_m};
     use crate::fence::{Shape, Zone};
-    use crate::identity::Identity;
     use crate::plan::Place;
-    use crate::vehicle::conduct::Conduct;
     use crate::vehicle::return_settings::ReturnGoal;
     use crate::vehicle::scene::{Scene, said};
     use crate::vehicle::steering::{Steering, SteeringKind};
@@ -379,8 +377,7 @@ mod tests {
 
     #[test]
     fn ardupilot_stays_at_its_final_height_and_px4_waits_at_its_own() {
-        let mut scene = Scene::hovering_at([40.0, 0.0, -5.0]);
-        (scene.identity, scene.conduct) = (Identity::ArduPilot, Conduct::new(true));
+        let mut scene = Scene::hovering_at([40.0, 0.0, -5.0]).of_ardupilot();
         scene.conduct.return_home.final_height_m = 3.0;
         assert_eq!(heights(scene), [15.0, 3.0]);
         for wait_s in [2.0, -1.0] {

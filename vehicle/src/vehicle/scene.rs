@@ -50,6 +50,12 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The scene of a vehicle with ArduPilot's conventions and defaults.
+    pub fn of_ardupilot(mut self) -> Self {
+        (self.identity, self.conduct) = (Identity::ArduPilot, Conduct::new(true));
+        self
+    }
+
     /// It hovers at a place, NED, m, by position, in the hold mode.
     pub fn hovering_at(position_m: [f64; 3]) -> Self {
         let setpoint = PositionReference::goal(position_m, 0.0);
