@@ -55,6 +55,8 @@ const PUSH_N: f64 = 2.0;
 /// Paths of which positions alone are given.
 const BARE_PATHS: [(Shape, f64, f64); 3] =
     [(Shape::Circle, 5.0, 0.5), (Shape::Circle, 4.0, 1.0), (Shape::FigureEight, 6.0, 0.5)];
+/// The last digit of a degree with seven decimals, as MAVLink has them, m.
+const DEGREES_M: f64 = 0.011;
 /// How far away goals are that jump each second, m.
 const JUMPS_M: [f64; 2] = [4.0, 30.0];
 /// Speeds that are reversed, m/s.
@@ -279,10 +281,12 @@ fn unforeseen(base: &Configuration) -> Vec<Plan> {
     }
     for (shape, size_m, rate_rad_s) in BARE_PATHS {
         let path = Path { shape, size_m, rate_rad_s };
-        let name = format!("{}, positions at 10 Hz", path_name(&path));
-        let whole = on_path(Row::Unforeseen, name, base, path);
-        let points = Points { path, derivatives: 0, each_s: 0.1, rounded_to: 0.0 };
-        plans.push(Plan { demand: Demand::Points(points), ..whole });
+        for (rounded, rounded_to) in [("", 0.0), (" rounded to 1.1 cm", DEGREES_M)] {
+            let name = format!("{}, positions{rounded} at 10 Hz", path_name(&path));
+            let whole = on_path(Row::Unforeseen, name, base, path);
+            let points = Points { path, derivatives: 0, each_s: 0.1, rounded_to };
+            plans.push(Plan { demand: Demand::Points(points), ..whole });
+        }
     }
     for speed_m_s in REVERSED_M_S {
         let name = format!("{speed_m_s} m/s, reversed each 5 s");

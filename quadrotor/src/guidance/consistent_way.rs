@@ -10,14 +10,27 @@
 //! ```
 //!
 //! Between two samples y moves on by its derivatives. An error δ of its jerk costs 10 δ/λ³ of x, which is a motion and is followed.
+//!
+//! Where noise makes y jump at its samples, a fast λ makes snap of it that no vehicle can follow, so λ is as slow as the jumps ask for.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::{GRAVITY_M_S2, Limits, PositionReference};
 
-/// λ, rad/s. Faster poles make more snap of the noise: at 10 rad/s so much that ways are narrowed by it.
+/// λ of points without noise, rad/s, and the slowest one: slower ways lag behind their points.
 const RATE_RAD_S: f64 = 8.0;
+const SLOWEST_RAD_S: f64 = 3.0;
+/// The snap that jumps may make, as a share of the one that the limit of tilt acceleration allows, and the limit, rad/s², beyond which that
+/// grows no more: rotors may have less than a limit that is wide open.
+const OF_LIMIT: f64 = 0.2;
+const LIMIT_RAD_S2: f64 = 8.0;
+/// The largest snap while a jump of one derivative alone fades, from the position to the jerk: times the jump and λ⁴, λ³, λ² or λ.
+const SNAP_OF_JUMP: [f64; ORDERS - 1] = [0.13, 0.69, 1.49, 1.72];
+/// How long, s, jumps are remembered.
+const REMEMBERED_S: f64 = 2.0;
+/// Less snap than that, m/s⁴, is not divided by.
+const LEAST_M_S4: f64 = 1e-9;
 /// A difference that fades with so many times the acceleration of the largest tilt is another motion, not an error.
 const ANOTHER: f64 = 2.0;
 /// Position and its derivatives up to the snap.
@@ -46,6 +59,12 @@ struct Beside {
     point: PositionReference,
     difference: Derivatives,
     time_us: u64,
+    /// How far the points have jumped lately, from the position to the jerk.
+    jumped: [f64; ORDERS - 1],
+    /// The largest snap that the points have had lately.
+    asked_m_s4: f64,
+    /// λ
+    rate_rad_s: f64,
 }
 
 impl ConsistentWay {
@@ -57,13 +76,13 @@ impl ConsistentWay {
     /// The motion at the time of a point. It begins with the first one, and anew where it cannot come to the point soon.
     pub fn beside(&mut self, point: &PositionReference, limits: &Limits, time_us: u64) -> PositionReference {
         let most_m_s2 = ANOTHER * GRAVITY_M_S2 * libm::tan(limits.tilt_rad);
-        let difference = self
+        let next = self
             .latest
-            .map(|before| before.difference_from(point, time_us))
-            .filter(|difference| fading_m_s2(difference) <= most_m_s2)
-            .unwrap_or([Vector3::zeros(); ORDERS]);
-        self.latest = Some(Beside { point: *point, difference, time_us });
-        let [position_m, velocity_m_s, acceleration_m_s2, jerk_m_s3, snap_m_s4] = difference;
+            .map(|before| before.next(point, limits, time_us))
+            .filter(|next| next.fading_m_s2() <= most_m_s2)
+            .unwrap_or_else(|| Beside::none(point, time_us));
+        self.latest = Some(next);
+        let [position_m, velocity_m_s, acceleration_m_s2, jerk_m_s3, snap_m_s4] = next.difference;
         PositionReference {
             position_m: point.position_m + position_m,
             velocity_m_s: point.velocity_m_s + velocity_m_s,
@@ -76,24 +95,62 @@ impl ConsistentWay {
 }
 
 impl Beside {
-    /// The difference of the same motion from a point at a later time.
-    fn difference_from(&self, point: &PositionReference, time_us: u64) -> Derivatives {
-        let elapsed_s = time_us.saturating_sub(self.time_us) as f64 / 1e6;
-        let faded = faded(&self.difference, elapsed_s);
-        let [expected, now] = [self.point.after(elapsed_s), *point].map(|point| derivatives(&point));
-        core::array::from_fn(|order| faded[order] + (expected[order] - now[order]))
+    /// No difference.
+    fn none(point: &PositionReference, time_us: u64) -> Self {
+        let difference = [Vector3::zeros(); ORDERS];
+        Self {
+            point: *point,
+            difference,
+            time_us,
+            jumped: [0.0; ORDERS - 1],
+            asked_m_s4: 0.0,
+            rate_rad_s: RATE_RAD_S,
+        }
     }
+
+    /// What is left of it beside a later point.
+    fn next(&self, point: &PositionReference, limits: &Limits, time_us: u64) -> Self {
+        let elapsed_s = time_us.saturating_sub(self.time_us) as f64 / 1e6;
+        let [expected, now] = [self.point.after(elapsed_s), *point].map(|point| derivatives(&point));
+        let jump: Derivatives = core::array::from_fn(|order| expected[order] - now[order]);
+        let faded = faded(&self.difference, self.rate_rad_s, elapsed_s);
+        let kept = libm::exp(-elapsed_s / REMEMBERED_S);
+        let jumped = core::array::from_fn(|order| jump[order].norm().max(self.jumped[order] * kept));
+        let asked_m_s4 = point.snap_m_s4.norm().max(self.asked_m_s4 * kept);
+        Self {
+            point: *point,
+            difference: core::array::from_fn(|order| faded[order] + jump[order]),
+            time_us,
+            jumped,
+            asked_m_s4,
+            rate_rad_s: rate_rad_s(&jumped, asked_m_s4, limits),
+        }
+    }
+
+    /// About the acceleration with which it fades, m/s².
+    fn fading_m_s2(&self) -> f64 {
+        let [position, velocity, acceleration, ..] = self.difference;
+        let by_position = position * (self.rate_rad_s * self.rate_rad_s);
+        let by_velocity = velocity * (2.0 * self.rate_rad_s);
+        by_position.norm().max(by_velocity.norm()).max(acceleration.norm())
+    }
+}
+
+/// The λ with which jumps make no more snap than they may, or than the points ask for themselves.
+fn rate_rad_s(jumped: &[f64; ORDERS - 1], asked_m_s4: f64, limits: &Limits) -> f64 {
+    let limit_rad_s2 = limits.tilt_acceleration_rad_s2.min(LIMIT_RAD_S2);
+    let most_m_s4 = (OF_LIMIT * GRAVITY_M_S2 * limit_rad_s2).max(asked_m_s4);
+    let [position, velocity, acceleration, jerk] =
+        core::array::from_fn(|order| most_m_s4 / (SNAP_OF_JUMP[order] * jumped[order]).max(LEAST_M_S4));
+    libm::sqrt(libm::sqrt(position))
+        .min(libm::cbrt(velocity))
+        .min(libm::sqrt(acceleration))
+        .min(jerk)
+        .clamp(SLOWEST_RAD_S, RATE_RAD_S)
 }
 
 fn derivatives(point: &PositionReference) -> Derivatives {
     [point.position_m, point.velocity_m_s, point.acceleration_m_s2, point.jerk_m_s3, point.snap_m_s4]
-}
-
-/// About the acceleration with which a difference fades, m/s².
-fn fading_m_s2([position, velocity, acceleration, ..]: &Derivatives) -> f64 {
-    let by_position = position * (RATE_RAD_S * RATE_RAD_S);
-    let by_velocity = velocity * (2.0 * RATE_RAD_S);
-    by_position.norm().max(by_velocity.norm()).max(acceleration.norm())
 }
 
 /// What is left of a difference after a time, s.
@@ -102,8 +159,8 @@ fn fading_m_s2([position, velocity, acceleration, ..]: &Derivatives) -> f64 {
 /// x − y = q e^(−λt)      q is of fourth degree
 /// q⁽ⁿ⁾ = Σ (n over k) λⁿ⁻ᵏ (x − y)⁽ᵏ⁾ e^(λt)
 /// ```
-fn faded(difference: &Derivatives, time_s: f64) -> Derivatives {
-    let begun = turned(difference, RATE_RAD_S);
+fn faded(difference: &Derivatives, rate_rad_s: f64, time_s: f64) -> Derivatives {
+    let begun = turned(difference, rate_rad_s);
     let mut later = begun;
     for (order, derivative) in later.iter_mut().enumerate() {
         // Taylor's, which ends.
@@ -113,8 +170,8 @@ fn faded(difference: &Derivatives, time_s: f64) -> Derivatives {
             *derivative += higher * share;
         }
     }
-    let left = libm::exp(-RATE_RAD_S * time_s);
-    turned(&later, -RATE_RAD_S).map(|derivative| derivative * left)
+    let left = libm::exp(-rate_rad_s * time_s);
+    turned(&later, -rate_rad_s).map(|derivative| derivative * left)
 }
 
 /// The derivatives of f e^(rate t) at t = 0.
@@ -194,6 +251,40 @@ mod tests {
                 }
                 before = Some(followed);
             }
+        }
+    }
+
+    /// The oracle is the differential equation with the steady λ: the snap of the way after a jump of one derivative alone, however large
+    /// the jump, is what the limit leaves to jumps. So large a jump that the slowest λ makes more is not asked for.
+    #[test]
+    fn jumps_make_no_more_snap_than_they_may() {
+        let limits = Limits::default();
+        let most_m_s4 = 0.2 * 9.80665 * limits.tilt_acceleration_rad_s2;
+        for (order, jump) in [(0, 0.05), (1, 0.2), (2, 0.5), (3, 2.0)] {
+            let mut way = ConsistentWay::default();
+            let point = |is_after: bool| {
+                let mut point = PositionReference::goal([0.0; 3], 0.0);
+                let derivative = match order {
+                    0 => &mut point.position_m,
+                    1 => &mut point.velocity_m_s,
+                    2 => &mut point.acceleration_m_s2,
+                    _ => &mut point.jerk_m_s3,
+                };
+                derivative.x = if is_after { jump } else { 0.0 };
+                point
+            };
+            let mut largest = 0.0_f64;
+            for step in 0..3_000 {
+                // The derivatives go on from the jump as those of one motion.
+                let time_us = step * 1_000;
+                let at = if step < 100 {
+                    point(false)
+                } else {
+                    point(true).after(1e-6 * (time_us - 100_000) as f64)
+                };
+                largest = largest.max(way.beside(&at, &limits, time_us).snap_m_s4.norm());
+            }
+            assert!(largest < 1.05 * most_m_s4 && largest > 0.8 * most_m_s4, "{order}: {largest}");
         }
     }
 

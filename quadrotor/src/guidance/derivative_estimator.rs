@@ -4,8 +4,8 @@
 //! count as samples, at the time of the change, so that a staircase is read by the instants at which it was set, whatever its
 //! period. A polynomial is fitted to the samples of the last 0.4 s, or to seven of them if they are farther apart.
 //!
-//! Noise makes derivatives from so short a time useless: the deviation of the third one falls with its power of 3.5. So noisy samples
-//! are remembered for longer, and a polynomial through all of them counts as long as it leaves no more than the noise.
+//! Noise makes derivatives from so short a time useless: the deviation of the third one falls with its power of 3.5. What remembers such
+//! samples for longer is in [`motion_filters`](super::motion_filters).
 
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
@@ -19,9 +19,7 @@ const SPACING_US: u64 = 40_000;
 const WINDOW_US: u64 = 400_000;
 const PERIODS: u64 = 6;
 /// So many samples are remembered.
-pub(crate) const CAPACITY: usize = 32;
-/// What a polynomial through more of them leaves may be so many times the variance of the noise.
-const AS_NOISE: f64 = 2.0;
+pub(crate) const CAPACITY: usize = 12;
 /// Signals that are set less often than this, µs, count as constant between two changes.
 const LONGEST_PERIOD_US: u64 = 300_000;
 /// A sample off the polynomial by more than this share of the largest recent change, and by so many standard deviations, begins
@@ -30,6 +28,9 @@ const OFF: f64 = 0.1;
 const DEVIATIONS: f64 = 6.0;
 /// Polynomials below this degree do not tell another motion from a curved one.
 const TELLING: usize = 3;
+/// What misses less than so many times as much, in squares, tells the motion as well as the polynomials: what those make of noisy samples
+/// changes from each to the next.
+const ALIKE: f64 = 4.0;
 /// Among the few samples before that, a change that is so many times as fast as the one before or behind it is a step, not motion. Those
 /// of smooth motions become so much faster only where they hardly move.
 const STEP: f64 = 4.0;
@@ -45,6 +46,19 @@ pub struct DerivativeEstimator<const AXES: usize> {
     held: SVector<f64, AXES>,
     since_us: u64,
     noise: SignalNoise,
+    /// What the polynomials have missed of the samples that came next.
+    missed: SignalNoise,
+}
+
+/// What a look at a signal finds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sample {
+    /// Nothing new.
+    None,
+    /// The first sample of a motion.
+    First,
+    /// The next one of it.
+    Next,
 }
 
 /// A step between two samples.
@@ -93,6 +107,7 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
             held: zero,
             since_us: 0,
             noise: SignalNoise::default(),
+            missed: SignalNoise::default(),
         }
     }
 
@@ -103,42 +118,50 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
 
     /// The signal at `time_us`. A change that is faster than `fastest` per second is a jump, not motion: what was before it is
     /// forgotten.
-    pub fn observe(&mut self, value: &SVector<f64, AXES>, fastest: f64, time_us: u64) {
+    pub(crate) fn observe(&mut self, value: &SVector<f64, AXES>, fastest: f64, time_us: u64) -> Sample {
         if *value == self.held {
             // A signal that rests begins anew with its next change.
             if time_us.saturating_sub(self.since_us) > self.patience_us() {
                 self.count = 0;
             }
-            return;
+            return Sample::None;
         }
         let Some((last_us, last)) = self.used().last().copied() else {
-            self.begin(value, time_us);
-            return;
+            return self.begin(value, time_us);
         };
         (self.held, self.since_us) = (*value, time_us);
         let elapsed_us = time_us.saturating_sub(last_us);
         let jumps = (value - last).norm() > fastest * (elapsed_us.max(SPACING_US) as f64 / 1e6);
-        let recent = if elapsed_us >= SPACING_US { self.recent_fit(time_us) } else { None };
-        if let Some(fit) = &recent {
+        let fit = if elapsed_us >= SPACING_US { self.fit(time_us) } else { None };
+        if let Some(fit) = &fit {
             self.noise.observe(fit.left);
+            self.missed.observe((value - fit.derivatives[0]).norm_squared());
         }
-        let fit = recent.map(|recent| self.longest_fit(recent, time_us));
-        if jumps || fit.is_some_and(|fit| self.is_off(value, &fit)) {
-            self.begin(value, time_us);
+        if jumps || fit.as_ref().is_some_and(|fit| self.is_off(value, fit)) {
+            return self.begin(value, time_us);
         } else if elapsed_us >= SPACING_US {
             match self.step_to(value, time_us) {
                 Some(Step::After) => return self.begin(value, time_us),
-                Some(Step::Before) => self.begin(&last, last_us),
+                Some(Step::Before) => {
+                    self.begin(&last, last_us);
+                }
                 None => {}
             }
             (self.held, self.since_us) = (*value, time_us);
             self.push(value, time_us);
+            return Sample::Next;
         }
+        Sample::None
     }
 
     /// How many samples are known of the motion.
     pub(crate) fn samples(&self) -> usize {
         self.count
+    }
+
+    /// Whether what misses the samples of a motion by a mean square tells it as well as the polynomials.
+    pub(crate) fn is_told_as_well(&self, missed: f64) -> bool {
+        self.count > 2 && missed < ALIKE * self.missed.variance()
     }
 
     /// The derivatives at `time_us`: zero of a signal that is constant or has just begun.
@@ -149,27 +172,9 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
         })
     }
 
-    /// The polynomial that counts.
-    fn fit(&self, time_us: u64) -> Option<PolynomialFit<AXES>> {
-        self.recent_fit(time_us).map(|recent| self.longest_fit(recent, time_us))
-    }
-
     /// The polynomial through the recent samples.
-    fn recent_fit(&self, time_us: u64) -> Option<PolynomialFit<AXES>> {
+    fn fit(&self, time_us: u64) -> Option<PolynomialFit<AXES>> {
         PolynomialFit::new(self.newest(self.recent()), self.noise.variance(), time_us)
-    }
-
-    /// The one through the most samples, up to all, that leaves no more than the noise; or else that through the recent ones.
-    fn longest_fit(&self, recent: PolynomialFit<AXES>, time_us: u64) -> PolynomialFit<AXES> {
-        let (variance, fitted) = (self.noise.variance(), self.recent());
-        let mut longest = recent;
-        for count in [(fitted + self.count) / 2, self.count].into_iter().filter(|count| *count > fitted) {
-            match PolynomialFit::new(self.newest(count), variance, time_us) {
-                Some(fit) if fit.left <= AS_NOISE * variance => longest = fit,
-                _ => break,
-            }
-        }
-        longest
     }
 
     /// How many samples count without noise.
@@ -189,9 +194,10 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
         self.samples.get(..self.count).unwrap_or(&self.samples)
     }
 
-    fn begin(&mut self, value: &SVector<f64, AXES>, time_us: u64) {
+    fn begin(&mut self, value: &SVector<f64, AXES>, time_us: u64) -> Sample {
         (self.samples[0], self.count) = ((time_us, *value), 1);
         (self.held, self.since_us) = (*value, time_us);
+        Sample::First
     }
 
     /// Time between the last two samples, µs.

@@ -3,7 +3,8 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::guidance::derivative_estimator::DerivativeEstimator;
+use crate::guidance::derivative_estimator::{DerivativeEstimator, Derivatives, Sample};
+use crate::guidance::motion_filters::MotionFilters;
 use crate::guidance::streamed_velocity::StreamedVelocity;
 use crate::{GRAVITY_M_S2, Limits, PositionReference};
 
@@ -24,6 +25,17 @@ pub(crate) struct FoundDerivatives {
     positions: DerivativeEstimator<3>,
     velocities: StreamedVelocity,
     accelerations: DerivativeEstimator<3>,
+    /// Beside the samples of one of them.
+    filters: MotionFilters<3>,
+    filtered: Signal,
+}
+
+/// What is given of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+enum Signal {
+    Position,
+    Velocity,
+    Acceleration,
 }
 
 impl FoundDerivatives {
@@ -33,6 +45,8 @@ impl FoundDerivatives {
             positions: DerivativeEstimator::new(),
             velocities: StreamedVelocity::default(),
             accelerations: DerivativeEstimator::new(),
+            filters: MotionFilters::new(&Vector3::zeros(), 0),
+            filtered: Signal::Position,
         }
     }
 
@@ -44,19 +58,47 @@ impl FoundDerivatives {
             self.accelerations.forget();
         } else {
             let fastest = JERK_JUMP * limits.jerk_horizontal_m_s3.max(limits.jerk_vertical_m_s3);
-            self.accelerations.observe(&point.acceleration_m_s2, fastest, time_us);
+            let sample = self.accelerations.observe(&point.acceleration_m_s2, fastest, time_us);
+            self.filter(Signal::Acceleration, sample, &point.acceleration_m_s2, time_us);
         }
         if bends || gives_all(point) {
             self.velocities.forget();
         } else {
-            self.velocities.observe(&point.velocity_m_s, limits, time_us);
+            let sample = self.velocities.look(&point.velocity_m_s, limits, time_us);
+            self.filter(Signal::Velocity, sample, &point.velocity_m_s, time_us);
         }
         if moves || bends || gives_all(point) {
             self.positions.forget();
         } else {
             let fastest = limits.speed_horizontal_m_s.max(limits.speed_up_m_s).max(limits.speed_down_m_s);
-            self.positions.observe(&point.position_m, SPEED_JUMP * fastest, time_us);
+            let sample = self.positions.observe(&point.position_m, SPEED_JUMP * fastest, time_us);
+            self.filter(Signal::Position, sample, &point.position_m, time_us);
         }
+    }
+
+    /// The filters go on with a sample, or with another motion.
+    fn filter(&mut self, signal: Signal, sample: Sample, value: &Vector3<f64>, time_us: u64) {
+        match sample {
+            Sample::None => {}
+            Sample::Next if self.filtered == signal => self.filters.observe(value, time_us),
+            Sample::First | Sample::Next => {
+                (self.filtered, self.filters) = (signal, MotionFilters::new(value, time_us));
+            }
+        }
+    }
+
+    /// A signal without its noise, and its derivatives, at a time.
+    fn told(
+        &self,
+        (signal, estimator): (Signal, &DerivativeEstimator<3>),
+        value: &Vector3<f64>,
+        time_us: u64,
+    ) -> (Vector3<f64>, Derivatives<3>) {
+        if self.filtered == signal && estimator.is_told_as_well(self.filters.missed()) {
+            let [value, first, second, third, fourth, _] = self.filters.at(time_us);
+            return (value, Derivatives { first, second, third, fourth });
+        }
+        (*value, estimator.at(time_us))
     }
 
     /// Whether the acceleration of a point is found from many samples. From a few it is only rough.
@@ -75,20 +117,25 @@ impl FoundDerivatives {
         let most_m_s3 = MOTION * GRAVITY_M_S2 * limits.tilt_rate_rad_s;
         let most_m_s4 = MOTION * GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
         let mut whole = *point;
-        let found = self.accelerations.at(since_us);
+        let accelerations = (Signal::Acceleration, &self.accelerations);
+        let (_, found) = self.told(accelerations, &point.acceleration_m_s2, since_us);
         whole.jerk_m_s3 = at_most(&found.first, most_m_s3);
         whole.snap_m_s4 = at_most(&found.second, most_m_s4);
         if is_given(&point.acceleration_m_s2) {
             return whole;
         }
         // A velocity may be zero where a motion turns.
-        let found = self.velocities.at(since_us);
+        let velocities = (Signal::Velocity, self.velocities.estimator());
+        let (velocity_m_s, found) = self.told(velocities, &point.velocity_m_s, since_us);
         if is_given(&point.velocity_m_s) || is_given(&found.first) {
+            whole.velocity_m_s = velocity_m_s;
             whole.acceleration_m_s2 = at_most(&found.first, most_m_s2);
             whole.jerk_m_s3 += at_most(&found.second, most_m_s3);
             whole.snap_m_s4 += at_most(&found.third, most_m_s4);
         } else {
-            let found = self.positions.at(since_us);
+            let positions = (Signal::Position, &self.positions);
+            let (position_m, found) = self.told(positions, &point.position_m, since_us);
+            whole.position_m = position_m;
             whole.velocity_m_s = found.first;
             whole.acceleration_m_s2 = at_most(&found.second, most_m_s2);
             whole.jerk_m_s3 = at_most(&found.third, most_m_s3);

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::Limits;
-use crate::guidance::derivative_estimator::{DerivativeEstimator, Derivatives};
+use crate::guidance::derivative_estimator::{DerivativeEstimator, Derivatives, Sample};
 
 /// Multiple of the limits of acceleration beyond which a change of the velocity is a jump, not motion.
 const JUMP: f64 = 3.0;
@@ -17,13 +17,23 @@ pub struct StreamedVelocity(DerivativeEstimator<3>);
 impl StreamedVelocity {
     /// The velocity at `time_us`, m/s.
     pub fn observe(&mut self, velocity_m_s: &Vector3<f64>, limits: &Limits, time_us: u64) {
+        self.look(velocity_m_s, limits, time_us);
+    }
+
+    /// The same, and what is found.
+    pub(crate) fn look(&mut self, velocity_m_s: &Vector3<f64>, limits: &Limits, time_us: u64) -> Sample {
         let strongest = limits.acceleration_horizontal_m_s2.max(limits.acceleration_vertical_m_s2);
-        self.0.observe(velocity_m_s, JUMP * strongest, time_us);
+        self.0.observe(velocity_m_s, JUMP * strongest, time_us)
     }
 
     /// Acceleration, m/s², and jerk, m/s³, at `time_us`.
     pub fn at(&self, time_us: u64) -> Derivatives<3> {
         self.0.at(time_us)
+    }
+
+    /// The estimator of its derivatives.
+    pub(crate) fn estimator(&self) -> &DerivativeEstimator<3> {
+        &self.0
     }
 
     /// How many samples of its motion are known.
