@@ -108,6 +108,9 @@ impl Autopilot {
     }
 
     /// Boots again: with its parameters, its plans and its clients' files, and nothing else.
+    // Not within a tick: a whole vehicle is made on the stack, and each tick would touch every page of the room for it.
+    #[cold]
+    #[inline(never)]
     fn reboot(&mut self) -> Result<(), FlightError> {
         let context = &mut self.context;
         let settings = context.vehicle.settings_of_reboot(context.parameters.settings());

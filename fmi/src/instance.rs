@@ -291,13 +291,19 @@ fn built<'a, M: Model>(
 ) -> Result<&'a mut M, CallError> {
     let there = match model.take() {
         Some(there) => there,
-        None => {
-            let new = M::new(&settings.parameters, &settings.inputs).map_err(CallError::of_model)?;
-            check_calculated(&new)?;
-            Box::new(new)
-        }
+        None => begun(settings)?,
     };
     Ok(model.insert(there))
+}
+
+/// A new run.
+// Not within a step: the run is made on the stack, and each step would touch every page of the room for it.
+#[cold]
+#[inline(never)]
+fn begun<M: Model>(settings: &SettingsOf<M>) -> Result<Box<M>, CallError> {
+    let new = M::new(&settings.parameters, &settings.inputs).map_err(CallError::of_model)?;
+    check_calculated(&new)?;
+    Ok(Box::new(new))
 }
 
 /// Applies tunable parameters: all of them or, on an error, none.

@@ -1,12 +1,14 @@
 //! The closed loop as a deterministic discrete-event simulation.
 
+use serde::Serialize;
+
 use crate::attitude::wrapped;
 use crate::configuration::validation::validate_start_over;
 use crate::design::prepared_design::PreparedDesign;
 use crate::plant::dynamics::BegunStep;
 use crate::schedule::point_after_us;
 use crate::sensors::SimulatedSensors;
-use crate::simulation_state::{SimulationState, World};
+use crate::simulation_state::{SimulationState, StateInPlace, World};
 use crate::{
     CascadeDesign, Configuration, ConfigurationError, ControlLaw, ControlLoop, InputSignal, Inputs, Outputs,
     Plant, PlantInputs, PlantState, PositionReference, RigidBody, Sensors, SimulationError,
@@ -120,6 +122,11 @@ impl Simulation {
     /// The state, to be saved.
     pub fn state(&self) -> SimulationState {
         SimulationState { world: self.world, control: *self.control.state() }
+    }
+
+    /// The state, to be written as [`Simulation::state`] is, without a copy of it.
+    pub fn state_in_place(&self) -> impl Serialize {
+        StateInPlace { world: &self.world, control: self.control.state() }
     }
 
     /// Goes back, or on, to a saved state of this flight.

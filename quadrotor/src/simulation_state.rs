@@ -18,6 +18,13 @@ pub struct SimulationState {
     pub(crate) control: ControlState,
 }
 
+/// The same where it is. It is written like a copy.
+#[derive(Serialize)]
+pub(crate) struct StateInPlace<'a> {
+    pub(crate) world: &'a World,
+    pub(crate) control: &'a ControlState,
+}
+
 /// What changes beside the control loop: the plant, what acts on it, and the sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct World {

@@ -1,9 +1,10 @@
 //! One MAVLink frame, version 1 or 2.
 
 use mavlink::dialects::ardupilotmega::MavMessage;
-use mavlink::{MAV_STX, MAV_STX_V2, MavlinkVersion, Message as _, calculate_crc};
+use mavlink::{MAV_STX, MAV_STX_V2, MavlinkVersion, Message as _};
 
 use super::Payload;
+use super::frame_check::frame_check;
 
 /// Version of the protocol on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,13 +85,13 @@ impl Frame {
         let frame = Self { bytes: bytes.to_vec(), version, end };
         let extra = extra_crc(frame.message_id())?;
         let told = u16::from_le_bytes(Payload::new(bytes).bytes(end));
-        (calculate_crc(bytes.get(1..end)?, extra) == told).then_some(frame)
+        (frame_check(bytes.get(1..end)?, extra) == told).then_some(frame)
     }
 
     /// Puts the checksum, which begins with a seed, behind header and payload.
     pub(super) fn finish(mut bytes: Vec<u8>, version: Version, extra: u8) -> Self {
         let end = bytes.len();
-        let checksum = calculate_crc(bytes.get(1..).unwrap_or_default(), extra);
+        let checksum = frame_check(bytes.get(1..).unwrap_or_default(), extra);
         bytes.extend(checksum.to_le_bytes());
         Self { bytes, version, end }
     }
@@ -193,7 +194,7 @@ impl Frame {
         }
         self.bytes.truncate(self.end);
         let Some(extra) = extra_crc(self.message_id()) else { return self };
-        let checksum = calculate_crc(self.bytes.get(1..).unwrap_or_default(), extra);
+        let checksum = frame_check(self.bytes.get(1..).unwrap_or_default(), extra);
         self.bytes.extend(checksum.to_le_bytes());
         self.bytes.push(link);
         self.bytes.extend(timestamp.to_le_bytes().iter().take(6));

@@ -12,6 +12,7 @@ mod command_name;
 mod decoder;
 mod encode;
 mod frame;
+mod frame_check;
 #[allow(deprecated)] // Clients still send what the dialect calls deprecated.
 pub mod id;
 mod message;

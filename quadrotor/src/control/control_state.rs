@@ -231,16 +231,30 @@ impl ControlState {
         } else {
             self.clocks(&design.configuration.controllers).look(time_us)
         };
-        // A takeover is measured more than once, and may be refused in its midst: only it copies the state, which `then_some` would do
-        // at each sample.
-        let before = if inputs.armed && self.takes_over(inputs) { Some(*self) } else { None };
-        let advanced = self.advance(design, inputs, instruments, (due, time_us));
-        match (advanced, before) {
-            (Ok(()), _) => {
-                (self.next_us, self.sample_us) = (Clocks::next_instant_us(time_us, sample_us), sample_us);
-            }
-            (Err(_), Some(before)) => *self = before,
-            (Err(_), None) => {}
+        if inputs.armed && self.takes_over(inputs) {
+            self.advance_or_stay(design, inputs, instruments, (due, time_us))?;
+        } else {
+            self.advance(design, inputs, instruments, (due, time_us))?;
+        }
+        (self.next_us, self.sample_us) = (Clocks::next_instant_us(time_us, sample_us), sample_us);
+        Ok(())
+    }
+
+    /// The same where it takes over a vehicle, which is measured more than once, and may be refused in its midst.
+    // Not within a sample, which would find room on the stack for the copy of the state each time.
+    #[cold]
+    #[inline(never)]
+    fn advance_or_stay(
+        &mut self,
+        design: &LoopDesign,
+        inputs: &ControlInputs,
+        instruments: &mut impl Instruments,
+        at: (Due, u64),
+    ) -> Result<(), ControlError> {
+        let before = *self;
+        let advanced = self.advance(design, inputs, instruments, at);
+        if advanced.is_err() {
+            *self = before;
         }
         advanced
     }
@@ -273,6 +287,16 @@ impl ControlState {
         self.control(design, inputs, &measurement, (due, time_us))
     }
 
+    /// Reference and controllers begin where the vehicle is.
+    // Not within a sample: they are made on the stack, in room that each sample would touch.
+    #[cold]
+    #[inline(never)]
+    fn engage_at(&mut self, configuration: &Configuration, start: &Measurement, time_us: u64) {
+        let shaping = self.guidance.is_shaped();
+        (self.guidance, self.cascade) = engaged(configuration, shaping, &start.motion, time_us);
+        self.command = RotorCommand::held(&configuration.airframe, start.rotor_speed_rad_s);
+    }
+
     /// Takes inputs in. Reference and controllers that begin take over the vehicle where it is.
     fn take(
         &mut self,
@@ -285,9 +309,7 @@ impl ControlState {
         self.take_law(configuration, inputs, time_us);
         if inputs.armed && takes_over {
             let start = instruments.read_at_takeover(time_us).checked(time_us)?;
-            let shaping = self.guidance.is_shaped();
-            (self.guidance, self.cascade) = engaged(configuration, shaping, &start.motion, time_us);
-            self.command = RotorCommand::held(&configuration.airframe, start.rotor_speed_rad_s);
+            self.engage_at(configuration, &start, time_us);
         }
         if inputs.armed && !self.armed {
             self.limits = CommandLimits::new(&configuration.limits);

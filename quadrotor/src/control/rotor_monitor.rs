@@ -16,12 +16,27 @@ const LOST_AFTER_S: f64 = 0.05;
 pub struct RotorMonitor {
     expected_rad_s: [f64; 4],
     different_for_s: [f64; 4],
+    latest: Option<Approach>,
+}
+
+/// By how much a lag closes a gap in a time. It takes an exponential, which is the same from one look to the next, and mostly for all rotors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Approach {
+    dt_s: f64,
+    lag_s: f64,
+    share: f64,
+}
+
+impl Approach {
+    fn new(dt_s: f64, lag_s: f64) -> Self {
+        Self { dt_s, lag_s, share: -libm::expm1(-dt_s / lag_s) }
+    }
 }
 
 impl RotorMonitor {
     /// Begins with rotors at these speeds, rad/s.
     pub fn new(measured_rad_s: [f64; 4]) -> Self {
-        Self { expected_rad_s: measured_rad_s, different_for_s: [0.0; 4] }
+        Self { expected_rad_s: measured_rad_s, different_for_s: [0.0; 4], latest: None }
     }
 
     /// Takes in measured speeds, rad/s, `dt_s` after the last ones, and the speeds that were commanded in between. Returns
@@ -38,8 +53,11 @@ impl RotorMonitor {
         for (index, ((expected, different_for), (command, measured))) in
             rotors.zip(command_rad_s.iter().zip(measured_rad_s)).enumerate()
         {
-            let share = -libm::expm1(-dt_s / airframe.lag_s(*command, *expected));
-            *expected += (command - *expected) * share;
+            let lag_s = airframe.lag_s(*command, *expected);
+            let known = self.latest.filter(|known| known.dt_s == dt_s && known.lag_s == lag_s);
+            let approach = known.unwrap_or_else(|| Approach::new(dt_s, lag_s));
+            self.latest = Some(approach);
+            *expected += (command - *expected) * approach.share;
             let difference = libm::fabs(measured - *expected);
             let differs = difference > (DIFFERENT_SHARE * *expected).max(DIFFERENT_RAD_S);
             *different_for = if differs { *different_for + dt_s } else { 0.0 };

@@ -1,5 +1,7 @@
 //! The three controllers of the cascade, designed from a configuration.
 
+use alloc::sync::Arc;
+
 use lmpc::{Augmented, DesignError, LaguerreBasis, LmpcDesign, Weighting, Weights, spectral_radius};
 
 use crate::configuration::validation::validate;
@@ -119,6 +121,27 @@ impl CascadeDesign {
         Ok(redesigned)
     }
 
+    /// The design of another configuration: this very one where nothing of it differs, else a copy, [redesigned](Self::redesign).
+    ///
+    /// # Errors
+    /// Those of [`CascadeDesign::new`].
+    pub(crate) fn adapted(
+        this: &Arc<Self>,
+        before: &Configuration,
+        configuration: &Configuration,
+    ) -> Result<Arc<Self>, ConfigurationError> {
+        validate(configuration)?;
+        let is_same = !Redesigned::between(before, configuration).is_any()
+            && this.position_is_isotropic == is_isotropic(configuration)
+            && this.mixer == Mixer::new(&configuration.airframe)?;
+        if is_same {
+            return Ok(Arc::clone(this));
+        }
+        let mut adapted = Self::clone(this);
+        adapted.redesign(before, configuration)?;
+        Ok(Arc::new(adapted))
+    }
+
     /// The closed loop of roll and pitch; `None` with the paper's models, which take it for instantaneous.
     pub fn attitude_loop(&self) -> Option<AttitudeLoop> {
         self.attitude.closed
@@ -145,6 +168,11 @@ pub struct Redesigned {
 }
 
 impl Redesigned {
+    /// Whether anything was.
+    fn is_any(&self) -> bool {
+        self.altitude || self.position || self.attitude || self.estimator
+    }
+
     /// What each design depends on, all of it in one place.
     fn between(one: &Configuration, other: &Configuration) -> Self {
         let (before, after) = (&one.controllers, &other.controllers);

@@ -157,6 +157,20 @@ mod tests {
         assert!(cache.design(&changed).is_err());
     }
 
+    /// A fleet that starts at different places keeps its controllers once.
+    #[test]
+    fn another_start_shares_the_controllers() {
+        let mut cache = DesignCache::with_room(2);
+        let mut configuration = Configuration::default();
+        let here = cache.design(&configuration).unwrap();
+        configuration.initial.position_m[0] = 5.0;
+        let there = cache.design(&configuration).unwrap();
+        assert!(!are_one(&here, &there) && Arc::ptr_eq(&here.design.cascade, &there.design.cascade));
+        configuration.controllers.position.terms = 6;
+        let other = cache.design(&configuration).unwrap();
+        assert!(!Arc::ptr_eq(&there.design.cascade, &other.design.cascade));
+    }
+
     #[test]
     fn the_sign_of_a_zero_is_another_configuration() {
         let mut cache = DesignCache::with_room(4);

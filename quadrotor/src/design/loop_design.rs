@@ -1,5 +1,7 @@
 //! Everything that a control loop computes before it flies.
 
+use alloc::sync::Arc;
+
 use crate::configuration::validation::same_start;
 use crate::design::cascade_design::CascadeDesign;
 use crate::design::rotor_loss_design::RotorLossDesign;
@@ -11,7 +13,8 @@ use crate::{Configuration, ConfigurationError};
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LoopDesign {
     pub(crate) configuration: Configuration,
-    pub(crate) cascade: CascadeDesign,
+    /// By far the largest part, which vehicles that differ in their start alone have in common.
+    pub(crate) cascade: Arc<CascadeDesign>,
     pub(crate) rotor_loss: RotorLossDesign,
     pub(crate) stability: StabilityReport,
 }
@@ -25,7 +28,7 @@ impl LoopDesign {
         let cascade = CascadeDesign::new(configuration)?;
         let stability = judged(configuration, &cascade, None)?;
         let rotor_loss = RotorLossDesign::new(configuration);
-        Ok(Self { configuration: *configuration, cascade, rotor_loss, stability })
+        Ok(Self { configuration: *configuration, cascade: Arc::new(cascade), rotor_loss, stability })
     }
 
     /// The design for another configuration of the same flight. What does not depend on the change is taken over from this one.
@@ -48,8 +51,7 @@ impl LoopDesign {
         configuration: &Configuration,
         flown: Option<&Configuration>,
     ) -> Result<Self, ConfigurationError> {
-        let mut cascade = self.cascade.clone();
-        cascade.redesign(&self.configuration, configuration)?;
+        let cascade = CascadeDesign::adapted(&self.cascade, &self.configuration, configuration)?;
         let rotor_loss = if RotorLossDesign::is_same(&self.configuration, configuration) {
             self.rotor_loss.clone()
         } else {

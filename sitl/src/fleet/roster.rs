@@ -236,19 +236,20 @@ impl Fleet {
         member.save_plans(now);
         let Some(links) = self.hubs.get_mut(member.hub) else { return false };
         let (time_us, system) = (member.time_us(), member.autopilot.system_id());
+        // Looked at where they are: they are large.
         let all = member.autopilot.take_outgoing();
         let any = all.len() > 0;
-        for outgoing in all {
+        for outgoing in all.as_slice() {
             if outgoing.message.id() == id::HEARTBEAT {
                 member.last_heartbeat = now;
             }
             if let Some(lockstep) = &mut member.lockstep
-                && reports_to_client(&outgoing, lockstep)
+                && reports_to_client(outgoing, lockstep)
             {
                 lockstep.has_reported();
             }
-            self.onlooker.hear(system, time_us, &outgoing);
-            if let Some(frame) = links.send(&outgoing, system) {
+            self.onlooker.hear(system, time_us, outgoing);
+            if let Some(frame) = links.send(outgoing, system) {
                 self.books.traffic(time_us, frame);
             }
         }

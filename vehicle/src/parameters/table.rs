@@ -1,5 +1,7 @@
 //! All parameters in their order: reading and writing them.
 
+use std::sync::OnceLock;
+
 use quadrotor::{Access, Configuration, PARAMETERS, Parameter};
 
 use super::ardupilot_parameters::ARDUPILOT_PARAMETERS;
@@ -49,15 +51,30 @@ pub enum Change {
 }
 
 /// All parameters, in alphabetical order: the order of their indices.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct ParameterTable {
-    entries: Vec<Entry>,
+    /// There are many of them. They are made once, for all vehicles of a program.
+    entries: &'static [Entry],
     is_ardupilot: bool,
 }
 
 impl ParameterTable {
     /// The table in the terms of an identity.
     pub fn new(identity: Identity) -> Self {
+        static OF_PX4: OnceLock<Vec<Entry>> = OnceLock::new();
+        static OF_ARDUPILOT: OnceLock<Vec<Entry>> = OnceLock::new();
+        static OF_NOBODY: OnceLock<Vec<Entry>> = OnceLock::new();
+        let known = match identity {
+            Identity::Px4 => &OF_PX4,
+            Identity::ArduPilot => &OF_ARDUPILOT,
+            Identity::Generic => &OF_NOBODY,
+        };
+        let entries = known.get_or_init(|| Self::entries_of(identity));
+        Self { entries, is_ardupilot: identity.is_ardupilot() }
+    }
+
+    /// All parameters of an identity, in order.
+    fn entries_of(identity: Identity) -> Vec<Entry> {
         let ardupilot = identity.is_ardupilot();
         let of_loop = PARAMETERS
             .iter()
@@ -87,12 +104,12 @@ impl ParameterTable {
             .chain(of_statistics)
             .collect();
         entries.sort_by_key(|entry| entry.id);
-        Self { entries, is_ardupilot: ardupilot }
+        entries
     }
 
     /// The parameters in order.
-    pub fn entries(&self) -> &[Entry] {
-        &self.entries
+    pub fn entries(&self) -> &'static [Entry] {
+        self.entries
     }
 
     /// Position of a parameter by its MAVLink name, its former one or its dotted one.
@@ -111,8 +128,7 @@ impl ParameterTable {
     /// # Errors
     /// [`SetError::Unknown`] with the name that may be meant.
     pub fn require(&self, name: &str) -> Result<&Entry, SetError> {
-        let unknown =
-            || SetError::Unknown { name: name.to_owned(), similar: suggestion(name, &self.entries) };
+        let unknown = || SetError::Unknown { name: name.to_owned(), similar: suggestion(name, self.entries) };
         self.find(name).ok_or_else(unknown)
     }
 

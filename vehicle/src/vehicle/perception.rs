@@ -32,8 +32,8 @@ struct Here {
 pub struct Perception {
     /// What the closed loop shows in truth.
     truth: Outputs,
-    /// What it shows, as far as the vehicle knows it.
-    outputs: Outputs,
+    /// The same with what the vehicle takes for its motion, if that is not the truth.
+    believed: Option<Outputs>,
     /// Instruments and estimator, unless the truth is known.
     navigation: Option<Navigation>,
     ideal_sensors: IdealSensors,
@@ -47,17 +47,16 @@ pub struct Perception {
 impl Perception {
     /// Begins with the motion of the closed loop, with instruments and an estimator or without.
     pub fn new(closed_loop: &ClosedLoop, navigation: Option<Navigation>) -> Self {
-        let truth = closed_loop.outputs();
         let mut perception = Self {
-            truth,
-            outputs: truth,
+            truth: closed_loop.outputs(),
+            believed: None,
             navigation,
             ideal_sensors: IdealSensors::default(),
             here: OnceLock::new(),
             slid_m: Vector2::zeros(),
             slid_before_m: Vector2::zeros(),
         };
-        perception.outputs = perception.known(closed_loop);
+        perception.believed = perception.belief(closed_loop);
         perception
     }
 
@@ -80,8 +79,8 @@ impl Perception {
             }
             None => self.ideal_sensors.step(self.truth.time_us, faults),
         }
-        self.outputs = self.known(closed_loop);
-        if self.here.get().is_some_and(|here| here.position_m != self.outputs.position_m) {
+        self.believed = self.belief(closed_loop);
+        if self.here.get().is_some_and(|here| here.position_m != self.outputs().position_m) {
             self.here = OnceLock::new();
         }
     }
@@ -90,7 +89,7 @@ impl Perception {
     pub fn place_of(&self, position_m: &Vector3<f64>, frame: &LocalFrame) -> Geodetic {
         let calculate =
             || Here { position_m: *position_m, frame: *frame, place: frame.to_geodetic(position_m) };
-        if *position_m == self.outputs.position_m {
+        if *position_m == self.outputs().position_m {
             let here = self.here.get_or_init(calculate);
             if (here.position_m, here.frame) == (*position_m, *frame) {
                 return here.place;
@@ -132,23 +131,23 @@ impl Perception {
     /// Looks at the same motion again: the closed loop has another configuration.
     pub fn look_again(&mut self, closed_loop: &ClosedLoop) {
         self.truth = closed_loop.outputs();
-        self.outputs = self.known(closed_loop);
+        self.believed = self.belief(closed_loop);
     }
 
-    /// The true outputs, with what the vehicle believes in place of the motion.
-    fn known(&self, closed_loop: &ClosedLoop) -> Outputs {
+    /// The true outputs, with what the vehicle believes in place of the motion; `None` if that is the truth.
+    fn belief(&self, closed_loop: &ClosedLoop) -> Option<Outputs> {
         match &self.navigation {
-            Some(navigation) => estimated(&self.truth, navigation),
-            None => match closed_loop.simulation().believed_motion() {
-                Some(body) => believed(&self.truth, &body, self.truth.acceleration_m_s2),
-                None => self.truth,
-            },
+            Some(navigation) => Some(estimated(&self.truth, navigation)),
+            None => {
+                let body = closed_loop.simulation().believed_motion()?;
+                Some(believed(&self.truth, &body, self.truth.acceleration_m_s2))
+            }
         }
     }
 
     /// What the closed loop shows, as far as the vehicle knows its motion.
     pub fn outputs(&self) -> &Outputs {
-        &self.outputs
+        self.believed.as_ref().unwrap_or(&self.truth)
     }
 
     /// What the closed loop shows in truth.

@@ -183,6 +183,10 @@ impl<'a> Proposal<'a> {
 
     /// Turns on to a heading, rad, that changes at a rate, rad/s; without one it stays.
     pub fn turn_on(&mut self, heading: Option<(f64, f64)>) {
+        // Steering is large: what is asked for again, tick by tick, does not copy it.
+        if self.steering.turns_to(heading) {
+            return;
+        }
         match (self.steering.to_mut(), heading) {
             (Steering::Goal(goal), Some((heading_rad, rate_rad_s))) => {
                 (goal.yaw_rad, goal.yaw_rate_rad_s) = (heading_rad, rate_rad_s);

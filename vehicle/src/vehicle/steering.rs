@@ -1,7 +1,7 @@
 //! What the closed loop is told, tick by tick.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use quadrotor::{AttitudeTarget, EasedLimits, Inputs, Outputs, PositionReference, Simulation};
+use quadrotor::{AttitudeTarget, EasedLimits, Heading, Inputs, Outputs, PositionReference, Simulation};
 
 use super::motion::{Motion, at_rest};
 use super::path_steering::PathSteering;
@@ -103,6 +103,27 @@ impl Steering {
             Self::Motion(motion) => matches!(motion.set_point().yaw, YawTarget::Follow(..)),
             Self::Idle { .. } | Self::Path(_) | Self::Attitude { .. } | Self::Descent { .. } => false,
         }
+    }
+
+    /// Whether it turns to a heading, rad, that changes at a rate, rad/s, already, or to none that does, bit for bit.
+    pub(super) fn turns_to(&self, heading: Option<(f64, f64)>) -> bool {
+        let goal = match self {
+            Self::Goal(goal) => Heading { yaw_acceleration_rad_s2: 0.0, ..Heading::of(goal) },
+            Self::Path(path) => path.goal(),
+            Self::Motion(_) => return false,
+            Self::Idle { .. } | Self::Attitude { .. } | Self::Descent { .. } => return true,
+        };
+        let (yaw_rad, yaw_rate_rad_s, yaw_acceleration_rad_s2) = match heading {
+            Some((yaw_rad, rate_rad_s)) => (yaw_rad, rate_rad_s, 0.0),
+            None => (goal.yaw_rad, 0.0, goal.yaw_acceleration_rad_s2),
+        };
+        [
+            (goal.yaw_rad, yaw_rad),
+            (goal.yaw_rate_rad_s, yaw_rate_rad_s),
+            (goal.yaw_acceleration_rad_s2, yaw_acceleration_rad_s2),
+        ]
+        .iter()
+        .all(|(has, asked)| f64::to_bits(*has) == f64::to_bits(*asked))
     }
 
     /// Whether it is asked for body rates, and for no attitude.

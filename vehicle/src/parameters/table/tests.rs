@@ -188,3 +188,12 @@ fn both_ends_of_every_range_can_be_set_in_single_precision() {
     assert_eq!(table.set("LIM_TILT", f64::from(1.2_f32), &mut values), Ok(Change::ClosedLoop));
     assert_eq!(values.configuration.limits.tilt_rad, 1.2, "the bound itself");
 }
+
+/// They are many: a vehicle more takes no room for them.
+#[test]
+fn all_vehicles_of_an_identity_share_their_parameters() {
+    for identity in [Identity::Px4, Identity::ArduPilot, Identity::Generic] {
+        let [one, other] = [(); 2].map(|()| ParameterTable::new(identity));
+        assert!(std::ptr::eq(one.entries(), other.entries()));
+    }
+}

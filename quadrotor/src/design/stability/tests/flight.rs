@@ -28,7 +28,7 @@ pub(super) fn designed(configuration: &Configuration) -> Result<LoopDesign, Conf
     let stability = StabilityReport::of(configuration, &cascade)
         .map_err(|source| ConfigurationError::Design { part: "closed loop", source })?;
     let rotor_loss = RotorLossDesign::new(configuration);
-    Ok(LoopDesign { configuration: *configuration, cascade, rotor_loss, stability })
+    Ok(LoopDesign { configuration: *configuration, cascade: cascade.into(), rotor_loss, stability })
 }
 
 /// Armed at the origin, with a goal and a heading.
