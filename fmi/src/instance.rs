@@ -247,6 +247,11 @@ impl<M: Model> Instance<M> {
         built(&mut self.model, &self.settings)
     }
 
+    /// Whether there is a run already.
+    pub(super) fn has_run(&self) -> bool {
+        self.model.is_some()
+    }
+
     /// The outputs at the present.
     pub(super) fn outputs(&mut self) -> Result<&M::Outputs, CallError> {
         let (model, observed) = self.observe()?;

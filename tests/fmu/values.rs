@@ -214,6 +214,25 @@ fn refused_reading_writes_nothing(subject: &'static Subject) {
     assert_eq!((status, values), (ERROR, [-7.0; 2]));
 }
 
+/// Few values at once, many, and outputs among others are what each of them is alone.
+fn what_is_read_together_is_what_is_read_alone(subject: &'static Subject) {
+    let mut instance = Instance::initialized(subject, &[], &[]);
+    assert_eq!(instance.do_step(0.0, 0.013), OK);
+    let real = subject.description.variables.iter().filter(|variable| variable.value_type == "Real");
+    let (outputs, others): (Vec<_>, Vec<_>) = real.partition(|variable| variable.causality == "output");
+    let mixed = outputs.iter().chain(&others).map(|variable| variable.reference).collect::<Vec<_>>();
+    let alone =
+        mixed.iter().map(|&reference| instance.try_reals(&[reference]).expect("a value")[0].to_bits());
+    let alone = alone.collect::<Vec<_>>();
+    for count in 0..=mixed.len() {
+        // Each time a run whose outputs have not been calculated yet.
+        let mut instance = Instance::initialized(subject, &[], &[]);
+        assert_eq!(instance.do_step(0.0, 0.013), OK);
+        let together = instance.try_reals(&mixed[..count]).expect("values");
+        assert_eq!(together.into_iter().map(f64::to_bits).collect::<Vec<_>>(), alone[..count], "{count}");
+    }
+}
+
 fn what_is_not_settable_stays(subject: &'static Subject) {
     let mut instance = Instance::new(subject);
     for variable in
@@ -306,6 +325,7 @@ for_each_model! {
     of_two_values_for_one_variable_the_last_counts,
     unknown_references_and_wrong_types_are_refused,
     refused_reading_writes_nothing,
+    what_is_read_together_is_what_is_read_alone,
     what_is_not_settable_stays,
     booleans_are_read_as_c_does,
 }
