@@ -25,7 +25,7 @@ pub(crate) struct FoundDerivatives {
     positions: DerivativeEstimator<3>,
     velocities: StreamedVelocity,
     accelerations: DerivativeEstimator<3>,
-    /// Beside the samples of one of them.
+    /// Beside the samples of positions or velocities. Accelerations change in steps, which are no noise.
     filters: MotionFilters<3>,
     filtered: Signal,
 }
@@ -35,7 +35,6 @@ pub(crate) struct FoundDerivatives {
 enum Signal {
     Position,
     Velocity,
-    Acceleration,
 }
 
 impl FoundDerivatives {
@@ -58,8 +57,7 @@ impl FoundDerivatives {
             self.accelerations.forget();
         } else {
             let fastest = JERK_JUMP * limits.jerk_horizontal_m_s3.max(limits.jerk_vertical_m_s3);
-            let sample = self.accelerations.observe(&point.acceleration_m_s2, fastest, time_us);
-            self.filter(Signal::Acceleration, sample, &point.acceleration_m_s2, time_us);
+            self.accelerations.observe(&point.acceleration_m_s2, fastest, time_us);
         }
         if bends || gives_all(point) {
             self.velocities.forget();
@@ -117,8 +115,7 @@ impl FoundDerivatives {
         let most_m_s3 = MOTION * GRAVITY_M_S2 * limits.tilt_rate_rad_s;
         let most_m_s4 = MOTION * GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
         let mut whole = *point;
-        let accelerations = (Signal::Acceleration, &self.accelerations);
-        let (_, found) = self.told(accelerations, &point.acceleration_m_s2, since_us);
+        let found = self.accelerations.at(since_us);
         whole.jerk_m_s3 = at_most(&found.first, most_m_s3);
         whole.snap_m_s4 = at_most(&found.second, most_m_s4);
         if is_given(&point.acceleration_m_s2) {

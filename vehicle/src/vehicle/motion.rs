@@ -23,11 +23,6 @@ const JERK_PER_RATE: f64 = 2.0;
 /// An error below this, m or rad, counts as none once it rests.
 const ARRIVED: f64 = 1e-6;
 
-/// A speed, m/s, and an acceleration, m/s², below which an axis that is to stop has stopped: it would go on by less than a micrometre. It
-/// would slow down for minutes otherwise, and what moves costs the controllers more than what rests.
-const STOPPED_M_S: f64 = 1e-6;
-const STOPPED_M_S2: f64 = 1e-5;
-
 /// A difference of speed that does not matter, m/s, and one of the yaw rate, rad/s.
 const SMALL_M_S: f64 = 0.05;
 const SMALL_RAD_S: f64 = 0.02;
@@ -114,10 +109,8 @@ impl Motion {
             let (v, a) = (self.state.velocity_m_s[axis], self.state.acceleration_m_s2[axis]);
             self.state.position_m[axis] += (v + a / 2.0 * dt_s) * dt_s;
             self.state.velocity_m_s[axis] += a * dt_s;
-            match self.set_point.axes[axis] {
-                AxisTarget::Position(goal) => self.settle(axis, goal),
-                AxisTarget::HOLD => self.stop(axis),
-                _ => {}
+            if let AxisTarget::Position(goal) = self.set_point.axes[axis] {
+                self.settle(axis, goal);
             }
         }
         self.turn(limits, dt_s);
@@ -181,14 +174,6 @@ impl Motion {
             YawTarget::Rate(wanted) => (rate - wanted).abs() <= SMALL_RAD_S,
             YawTarget::Angle(angle) => rate.abs() <= coming(angle) + SMALL_RAD_S,
             YawTarget::Follow(angle, wanted) => (rate - wanted).abs() <= coming(angle) + SMALL_RAD_S,
-        }
-    }
-
-    /// Ends the last of a stop.
-    fn stop(&mut self, axis: usize) {
-        let (v, a) = (self.state.velocity_m_s[axis], self.state.acceleration_m_s2[axis]);
-        if v.abs() < STOPPED_M_S && a.abs() < STOPPED_M_S2 {
-            (self.state.velocity_m_s[axis], self.state.acceleration_m_s2[axis]) = (0.0, 0.0);
         }
     }
 
@@ -387,19 +372,6 @@ mod tests {
             }
             prop_assert!((end.yaw_rad - yaw).abs() < 1e-3, "{end:?}");
         }
-    }
-
-    /// It would slow down for ever.
-    #[test]
-    fn what_is_to_stop_rests_at_last() {
-        let set_point = PositionSetPoint { axes: [AxisTarget::Velocity(2.0); 3], yaw: YawTarget::Hold };
-        let mut motion = fly(set_point, 5.0, |_| {});
-        motion.ask(PositionSetPoint::HOLD, 0);
-        for _ in 0..8_000 {
-            motion.step(&Limits::default(), DT_S);
-        }
-        let rests = at_rest(motion.state.position_m, motion.state.yaw_rad);
-        assert_eq!(motion.state, rests);
     }
 
     #[test]
