@@ -31,10 +31,6 @@ const CATCHING_UP: f64 = 0.01;
 const LEAST_CATCHING_UP_M_S: f64 = 0.05;
 /// The same of a reference that is faster than the limit, which is another's plan.
 const CATCHING_UP_WITH_FASTER: f64 = 0.1;
-/// How much more jerk than a reference that asks for more than the limit the feedback may use, as a share of the limit. Such a
-/// reference turns at the limit all the way round: a plan of a few functions of time, kept to it at each sample, would never come back to its
-/// way.
-const TURNING_BACK: f64 = 0.6;
 /// What rounding makes of a reference at the speed limit.
 const ROUNDING: f64 = 1.0 + 1e-6;
 /// With how much snap per jerk the attitude loop answers at most when the jerk of the reference jumps, 1/s.
@@ -107,11 +103,11 @@ pub(crate) fn position_bounds(
     asked: &Asked,
     under_way: TurnUnderWay,
 ) -> [f64; POSITION_BOUNDS] {
-    let most_m_s4 = GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
-    let turning = with_faster(most_m_s4, asked.snap_m_s4, CATCHING_UP_WITH_FASTER).max(under_way.snap_m_s4)
+    let turning = with_faster(GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2, asked.snap_m_s4)
+        .max(under_way.snap_m_s4)
         + ANSWER_1_S * under_way.jump_m_s3;
-    let leaning = with_faster(GRAVITY_M_S2 * limits.tilt_rate_rad_s, asked.jerk_m_s3, TURNING_BACK)
-        .max(under_way.jerk_m_s3);
+    let leaning =
+        with_faster(GRAVITY_M_S2 * limits.tilt_rate_rad_s, asked.jerk_m_s3).max(under_way.jerk_m_s3);
     let speed = most_speed_m_s(limits.speed_horizontal_m_s, asked.speed_m_s);
     core::array::from_fn(|bound| match bound {
         ..SIDES => present_m_s2,
@@ -149,9 +145,9 @@ pub(crate) fn most_speed_m_s(limit_m_s: f64, asked_m_s: f64) -> f64 {
     limit_m_s.max(asked_m_s + catching_up_m_s(limit_m_s, asked_m_s))
 }
 
-/// A limit, or by a share of it more than a reference that asks for more than it.
-fn with_faster(limit: f64, asked: f64, share: f64) -> f64 {
-    if asked > ROUNDING * limit { asked + share * limit } else { limit }
+/// A limit, or more than a reference that asks for more than it.
+fn with_faster(limit: f64, asked: f64) -> f64 {
+    if asked > ROUNDING * limit { asked + CATCHING_UP_WITH_FASTER * limit } else { limit }
 }
 
 fn catching_up_m_s(limit_m_s: f64, asked_m_s: f64) -> f64 {
@@ -239,11 +235,11 @@ mod tests {
         let limits = Limits::default();
         let [leaning, turning] =
             [limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2].map(|limit| GRAVITY_M_S2 * limit);
-        for (share, turned, leant) in [(0.9, 1.0, 1.0), (1.0, 1.0, 1.0), (1.5, 1.6, 2.1)] {
+        for (share, expected) in [(0.9, 1.0), (1.0, 1.0), (1.5, 1.6)] {
             let asked = Asked { jerk_m_s3: share * leaning, snap_m_s4: share * turning, ..Asked::default() };
             let bounds = position_bounds(&limits, (5.0, 4.0), &asked, TurnUnderWay::default());
-            assert!((bounds[2 * SIDES] / turning - turned).abs() < 1e-12);
-            assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - leant).abs() < 1e-12);
+            assert!((bounds[2 * SIDES] / turning - expected).abs() < 1e-12);
+            assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - expected).abs() < 1e-12);
         }
     }
 

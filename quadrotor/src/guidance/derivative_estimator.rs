@@ -4,12 +4,14 @@
 //! count as samples, at the time of the change, so that a staircase is read by the instants at which it was set, whatever its
 //! period. A polynomial is fitted to the samples of the last 0.4 s, or to seven of them if they are farther apart.
 //!
-//! Noise makes derivatives from so short a time useless: the deviation of the third one falls with its power of 3.5. What remembers such
-//! samples for longer is in [`motion_filters`](super::motion_filters).
+//! Noise makes derivatives from so short a time useless: the deviation of the third one falls with its power of 3.5. So noisy samples
+//! are remembered for longer, and a polynomial through all of them counts as long as it leaves no more than the noise. Where they are
+//! a motion, [`motion_filters`](super::motion_filters) do better.
 
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
+use crate::guidance::lately_missed::LatelyMissed;
 use crate::guidance::polynomial_fit::PolynomialFit;
 use crate::guidance::signal_noise::SignalNoise;
 
@@ -19,7 +21,9 @@ const SPACING_US: u64 = 40_000;
 const WINDOW_US: u64 = 400_000;
 const PERIODS: u64 = 6;
 /// So many samples are remembered.
-pub(crate) const CAPACITY: usize = 12;
+pub(crate) const CAPACITY: usize = 32;
+/// What a polynomial through more of them leaves may be so many times the variance of the noise.
+const AS_NOISE: f64 = 2.0;
 /// Signals that are set less often than this, µs, count as constant between two changes.
 const LONGEST_PERIOD_US: u64 = 300_000;
 /// A sample off the polynomial by more than this share of the largest recent change, and by so many standard deviations, begins
@@ -47,7 +51,7 @@ pub struct DerivativeEstimator<const AXES: usize> {
     since_us: u64,
     noise: SignalNoise,
     /// What the polynomials have missed of the samples that came next.
-    missed: SignalNoise,
+    missed: LatelyMissed,
 }
 
 /// What a look at a signal finds.
@@ -107,7 +111,7 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
             held: zero,
             since_us: 0,
             noise: SignalNoise::default(),
-            missed: SignalNoise::default(),
+            missed: LatelyMissed::default(),
         }
     }
 
@@ -132,11 +136,12 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
         (self.held, self.since_us) = (*value, time_us);
         let elapsed_us = time_us.saturating_sub(last_us);
         let jumps = (value - last).norm() > fastest * (elapsed_us.max(SPACING_US) as f64 / 1e6);
-        let fit = if elapsed_us >= SPACING_US { self.fit(time_us) } else { None };
-        if let Some(fit) = &fit {
+        let recent = if elapsed_us >= SPACING_US { self.recent_fit(time_us) } else { None };
+        if let Some(fit) = &recent {
             self.noise.observe(fit.left);
             self.missed.observe((value - fit.derivatives[0]).norm_squared());
         }
+        let fit = recent.map(|recent| self.longest_fit(recent, time_us));
         if jumps || fit.as_ref().is_some_and(|fit| self.is_off(value, fit)) {
             return self.begin(value, time_us);
         } else if elapsed_us >= SPACING_US {
@@ -161,7 +166,7 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
 
     /// Whether what misses the samples of a motion by a mean square tells it as well as the polynomials.
     pub(crate) fn is_told_as_well(&self, missed: f64) -> bool {
-        self.count > 2 && missed < ALIKE * self.missed.variance()
+        self.count > 2 && missed < ALIKE * self.missed.mean_square()
     }
 
     /// The derivatives at `time_us`: zero of a signal that is constant or has just begun.
@@ -172,9 +177,27 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
         })
     }
 
-    /// The polynomial through the recent samples.
+    /// The polynomial that counts.
     fn fit(&self, time_us: u64) -> Option<PolynomialFit<AXES>> {
+        self.recent_fit(time_us).map(|recent| self.longest_fit(recent, time_us))
+    }
+
+    /// The polynomial through the recent samples.
+    fn recent_fit(&self, time_us: u64) -> Option<PolynomialFit<AXES>> {
         PolynomialFit::new(self.newest(self.recent()), self.noise.variance(), time_us)
+    }
+
+    /// The one through the most samples, up to all, that leaves no more than the noise; or else that through the recent ones.
+    fn longest_fit(&self, recent: PolynomialFit<AXES>, time_us: u64) -> PolynomialFit<AXES> {
+        let (variance, fitted) = (self.noise.variance(), self.recent());
+        let mut longest = recent;
+        for count in [(fitted + self.count) / 2, self.count].into_iter().filter(|count| *count > fitted) {
+            match PolynomialFit::new(self.newest(count), variance, time_us) {
+                Some(fit) if fit.left <= AS_NOISE * variance => longest = fit,
+                _ => break,
+            }
+        }
+        longest
     }
 
     /// How many samples count without noise.

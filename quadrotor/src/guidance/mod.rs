@@ -13,6 +13,7 @@ pub(crate) mod heading_shaper;
 pub(crate) mod held_input;
 #[cfg(test)]
 pub(crate) mod known_motion;
+pub(crate) mod lately_missed;
 pub(crate) mod motion_filters;
 pub(crate) mod motion_profile;
 #[cfg(feature = "shaper")]

@@ -3,41 +3,33 @@
 use serde::{Deserialize, Serialize};
 
 /// So many fits count.
-const FITS: usize = 16;
-/// The mean square over the median of the squares of three normal deviates: 3 over the median of χ²₃.
-const MEAN_OF_MEDIAN: f64 = 1.268;
+const FITS: u32 = 16;
+/// Least variance of which the logarithm is taken.
+const LEAST_VARIANCE: f64 = 1e-40;
+/// The mean square over the geometric mean of the squares of three normal deviates: 1/(⅔ exp ψ(3/2)).
+const MEAN_OF_LOGARITHMS: f64 = 1.45;
 
 /// What polynomials through a signal leave, over many of them: one alone leaves next to nothing by chance.
 ///
-/// It is a median: the corners of a signal, of which a few fits leave much, do not count as noise, and a few rounded samples that happen
-/// to lie on a polynomial do not count as exact.
+/// It is a geometric mean, so that the corners of a signal, of which a few fits leave much, do not count as noise.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct SignalNoise {
-    /// What the latest fits left; the oldest is replaced next.
-    left: [f64; FITS],
-    /// How many were seen, and then counted from [`FITS`] on again.
-    fits: usize,
-    variance: f64,
+    log_variance: f64,
+    /// How many were seen, at most as many as count.
+    fits: u32,
 }
 
 impl SignalNoise {
     /// A polynomial left a variance.
     pub fn observe(&mut self, variance: f64) {
-        if let Some(left) = self.left.get_mut(self.fits % FITS) {
-            *left = variance;
-        }
-        self.fits = if self.fits + 1 < 2 * FITS { self.fits + 1 } else { FITS };
-        let mut sorted = self.left;
-        let seen = sorted.get_mut(..self.fits.min(FITS)).unwrap_or_default();
-        seen.sort_unstable_by(f64::total_cmp);
-        let [below, above] =
-            [seen.len() - 1, seen.len()].map(|twice| seen.get(twice / 2).copied().unwrap_or_default());
-        self.variance = MEAN_OF_MEDIAN * (below + above) / 2.0;
+        self.fits = (self.fits + 1).min(FITS);
+        let log_variance = libm::log(variance.max(LEAST_VARIANCE));
+        self.log_variance += (log_variance - self.log_variance) / f64::from(self.fits);
     }
 
     /// Variance of the signal; 0 if nothing is known.
     pub fn variance(&self) -> f64 {
-        self.variance
+        if self.fits == 0 { 0.0 } else { MEAN_OF_LOGARITHMS * libm::exp(self.log_variance) }
     }
 }
 
