@@ -130,16 +130,9 @@ impl CascadeDesign {
         before: &Configuration,
         configuration: &Configuration,
     ) -> Result<Arc<Self>, ConfigurationError> {
-        validate(configuration)?;
-        let is_same = !Redesigned::between(before, configuration).is_any()
-            && this.position_is_isotropic == is_isotropic(configuration)
-            && this.mixer == Mixer::new(&configuration.airframe)?;
-        if is_same {
-            return Ok(Arc::clone(this));
-        }
         let mut adapted = Self::clone(this);
         adapted.redesign(before, configuration)?;
-        Ok(Arc::new(adapted))
+        Ok(if adapted == **this { Arc::clone(this) } else { Arc::new(adapted) })
     }
 
     /// The closed loop of roll and pitch; `None` with the paper's models, which take it for instantaneous.
@@ -168,11 +161,6 @@ pub struct Redesigned {
 }
 
 impl Redesigned {
-    /// Whether anything was.
-    fn is_any(&self) -> bool {
-        self.altitude || self.position || self.attitude || self.estimator
-    }
-
     /// What each design depends on, all of it in one place.
     fn between(one: &Configuration, other: &Configuration) -> Self {
         let (before, after) = (&one.controllers, &other.controllers);

@@ -254,8 +254,7 @@ mod tests {
         }
     }
 
-    /// The oracle is the differential equation with the steady λ: the snap of the way after a jump of one derivative alone, however large
-    /// the jump, is what the limit leaves to jumps. So large a jump that the slowest λ makes more is not asked for.
+    /// A jump of one derivative alone, between what the fastest and the slowest λ may do, makes the snap that the limit leaves to jumps.
     #[test]
     fn jumps_make_no_more_snap_than_they_may() {
         let limits = Limits::default();
