@@ -1,5 +1,6 @@
 //! The closed loop as a deterministic discrete-event simulation.
 
+use nalgebra::Vector3;
 use serde::Serialize;
 
 use crate::attitude::wrapped;
@@ -172,6 +173,14 @@ impl Simulation {
         (self.plant, self.course) = (plant, None);
         self.control.hand_over(prepared);
         Ok(())
+    }
+
+    /// An estimate of the place has leapt, and the reference with it: see [`ControlLoop::shift_positions`]. The plant is where it was.
+    ///
+    /// # Errors
+    /// [`SimulationError::InputNotFinite`]; nothing has changed then.
+    pub fn shift_positions(&mut self, by_m: &Vector3<f64>) -> Result<(), SimulationError> {
+        Ok(self.control.shift_positions(by_m)?)
     }
 
     /// The law that flies.

@@ -86,6 +86,12 @@ impl AltitudeController {
         self.controller.input_reference().x
     }
 
+    /// Vehicle and reference are elsewhere, m down: neither has moved.
+    pub(crate) fn shift(&mut self, by_m: f64) {
+        self.controller.turn(|measured| measured + Vector3::x() * by_m, Vector1::clone_owned);
+        self.reference.position.x += by_m;
+    }
+
     /// Leaves to the feed-forward of the reference what it takes over of the feedback: so much more drag per mass, 1/s.
     pub(crate) fn feed_forward(&mut self, drag_1_s: f64) {
         let more = self.reference.velocity * drag_1_s;

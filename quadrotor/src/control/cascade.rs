@@ -125,6 +125,13 @@ impl Cascade {
         }
     }
 
+    /// Vehicle and reference are elsewhere, m: neither has moved.
+    pub(crate) fn shift(&mut self, by_m: &Vector3<f64>) {
+        self.position.shift(&by_m.xy());
+        self.altitude.shift(by_m.z);
+        self.turned.shift(&by_m.xy());
+    }
+
     /// The acceleration that is commanded, NED, m/s².
     pub(crate) fn acceleration_m_s2(&self) -> Vector3<f64> {
         self.reference_m_s2 + self.feedback_m_s2

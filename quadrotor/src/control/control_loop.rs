@@ -10,6 +10,7 @@ use crate::control::control_state::ControlState;
 use crate::control::measurement::Instruments;
 use crate::design::loop_design::LoopDesign;
 use crate::design::prepared_design::PreparedDesign;
+use crate::finite::are_finite;
 use crate::{CascadeDesign, Configuration, ConfigurationError, Inputs, RigidBody, StabilityReport};
 
 /// Guidance, estimator and controllers of a vehicle: from references and measurements to rotor commands.
@@ -166,6 +167,20 @@ impl ControlLoop {
     pub fn reconfigure(&mut self, configuration: &Configuration) -> Result<(), ConfigurationError> {
         let prepared = self.prepare(configuration)?;
         self.hand_over(prepared);
+        Ok(())
+    }
+
+    /// Takes vehicle and reference to be elsewhere by `by_m` (m, NED), and neither to have moved: an estimate of the place has leapt, and
+    /// the reference with it. Call it before the first sample with the other position and reference; without it, the leap would be flown
+    /// after.
+    ///
+    /// # Errors
+    /// [`ControlError::InputNotFinite`] with the name `by_m`; nothing has changed then.
+    pub fn shift_positions(&mut self, by_m: &Vector3<f64>) -> Result<(), ControlError> {
+        if !are_finite(by_m.as_slice()) {
+            return Err(ControlError::InputNotFinite { name: "by_m", time_us: self.next_sample_us() });
+        }
+        self.state.shift_positions(by_m);
         Ok(())
     }
 

@@ -3,6 +3,7 @@
 mod law_in_force;
 mod watching;
 
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::control::cascade::Cascade;
@@ -200,6 +201,14 @@ impl ControlState {
     /// turning if it turns, and else as [`PositionReference::expected_after`] has it.
     pub fn preview(&self, time_us: u64) -> PositionReference {
         self.guidance.preview(time_us)
+    }
+
+    /// All positions are elsewhere, m, and nothing has moved.
+    pub(crate) fn shift_positions(&mut self, by_m: &Vector3<f64>) {
+        self.guidance.shift(by_m);
+        self.cascade.shift(by_m);
+        self.estimator.shift(by_m);
+        self.learned.shift(by_m);
     }
 
     /// φ and θ that the position controller asks of the attitude controller, rad.

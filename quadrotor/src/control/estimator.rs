@@ -60,6 +60,11 @@ impl Estimator {
         }
     }
 
+    /// The origin of positions is elsewhere: they are by so much more, m.
+    pub(crate) fn shift(&mut self, by_m: &Vector3<f64>) {
+        self.body.position_m += by_m;
+    }
+
     /// The motion predicted for `time_us`, a fraction of a sample away at most.
     pub(crate) fn body_at(&self, time_us: u64) -> RigidBody {
         let elapsed_s = (time_us as f64 - self.time_us as f64) / 1e6;

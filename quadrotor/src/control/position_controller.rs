@@ -154,6 +154,14 @@ impl PositionController {
         Step { input: back.vector(&step.input), ..step }
     }
 
+    /// Vehicle and reference are elsewhere, m: neither has moved.
+    pub(crate) fn shift(&mut self, by_m: &Vector2<f64>) {
+        let zero = Vector2::zeros();
+        let by = by_axis([*by_m, zero, zero, zero, zero, zero]);
+        self.controller.turn(|measured| measured + by, Vector2::clone_owned);
+        self.reference.position += by_m;
+    }
+
     /// Leaves to the feed-forward of the reference what it takes over of the feedback: so much more drag per mass, 1/s.
     pub(crate) fn feed_forward(&mut self, drag_1_s: &Vector2<f64>) {
         let more = drag_1_s.component_mul(&self.reference.velocity);

@@ -72,6 +72,12 @@ impl TurnedWay {
         self.way.map(|_| followed)
     }
 
+    /// Goal and vehicle are elsewhere, m north and east.
+    pub(crate) fn shift(&mut self, by_m: &Vector2<f64>) {
+        let by_m = Vector3::new(by_m.x, by_m.y, 0.0);
+        self.way.iter_mut().for_each(|way| way.guidance.shift(&by_m));
+    }
+
     /// The way, if one is followed.
     pub(crate) fn foretold(&self) -> Option<ForetoldWay> {
         self.way

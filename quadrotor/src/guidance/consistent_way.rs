@@ -73,6 +73,11 @@ impl ConsistentWay {
         self.latest = None;
     }
 
+    /// The points are elsewhere, m, and the motion with them.
+    pub fn shift(&mut self, by_m: &Vector3<f64>) {
+        self.latest.iter_mut().for_each(|latest| latest.point.position_m += by_m);
+    }
+
     /// The motion at the time of a point. It begins with the first one, and anew where it cannot come to the point soon.
     pub fn beside(&mut self, point: &PositionReference, limits: &Limits, time_us: u64) -> PositionReference {
         let most_m_s2 = ANOTHER * GRAVITY_M_S2 * libm::tan(limits.tilt_rad);

@@ -59,7 +59,7 @@ pub struct DerivativeEstimator<const AXES: usize> {
 pub(crate) enum Sample {
     /// Nothing new.
     None,
-    /// The first sample of a motion.
+    /// The first sample of a motion, or the second one, if it shows that those before the first were of another motion.
     First,
     /// The next one of it.
     Next,
@@ -145,18 +145,22 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
         if jumps || fit.as_ref().is_some_and(|fit| self.is_off(value, fit)) {
             return self.begin(value, time_us);
         } else if elapsed_us >= SPACING_US {
-            match self.step_to(value, time_us) {
+            let sample = match self.step_to(value, time_us) {
                 Some(Step::After) => return self.begin(value, time_us),
-                Some(Step::Before) => {
-                    self.begin(&last, last_us);
-                }
-                None => {}
-            }
+                Some(Step::Before) => self.begin(&last, last_us),
+                None => Sample::Next,
+            };
             (self.held, self.since_us) = (*value, time_us);
             self.push(value, time_us);
-            return Sample::Next;
+            return sample;
         }
         Sample::None
+    }
+
+    /// Another origin: as if the signal had always been elsewhere.
+    pub(crate) fn shift(&mut self, by: &SVector<f64, AXES>) {
+        self.held += by;
+        self.samples.iter_mut().for_each(|(_, value)| *value += by);
     }
 
     /// How many samples are known of the motion.

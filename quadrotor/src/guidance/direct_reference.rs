@@ -1,6 +1,6 @@
 //! A reference that is passed on as it comes.
 
-use nalgebra::Vector1;
+use nalgebra::{Vector1, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::wrapped;
@@ -90,6 +90,15 @@ impl DirectReference {
             let fastest = JUMP * limits.yaw_acceleration_rad_s2;
             self.yaw_rates.observe(&Vector1::new(reference.yaw_rate_rad_s), fastest, time_us);
         }
+    }
+
+    /// The points are elsewhere, m, but the motion is the same.
+    pub fn shift(&mut self, by_m: &Vector3<f64>) {
+        self.latest.position_m += by_m;
+        self.plan.iter_mut().for_each(|plan| plan.shift(by_m));
+        self.input.shift(by_m);
+        self.found.shift(by_m);
+        self.way.shift(by_m);
     }
 
     /// A sample of the way, and of the plan that it is a point of.

@@ -74,6 +74,14 @@ impl FoundDerivatives {
         }
     }
 
+    /// The positions are elsewhere, m, but the motion is the same.
+    pub fn shift(&mut self, by_m: &Vector3<f64>) {
+        self.positions.shift(by_m);
+        if self.filtered == Signal::Position {
+            self.filters.shift(by_m);
+        }
+    }
+
     /// The filters go on with a sample, or with another motion.
     fn filter(&mut self, signal: Signal, sample: Sample, value: &Vector3<f64>, time_us: u64) {
         match sample {

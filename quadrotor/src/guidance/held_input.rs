@@ -38,6 +38,11 @@ impl HeldInput {
         }
     }
 
+    /// The present point is elsewhere, m, and no older or newer for that.
+    pub fn shift(&mut self, by_m: &Vector3<f64>) {
+        self.held[0] += by_m;
+    }
+
     /// When the present point was set, µs.
     pub fn since_us(&self) -> u64 {
         self.since_us

@@ -54,6 +54,11 @@ impl<const AXES: usize> MotionFilters<AXES> {
         Self { filters: [MotionFilter::new(value); BANDWIDTHS_RAD_S.len()], time_us }
     }
 
+    /// Another origin: as if all samples had been elsewhere.
+    pub fn shift(&mut self, by: &SVector<f64, AXES>) {
+        self.filters.iter_mut().for_each(|filter| filter.state[0] += by);
+    }
+
     /// The next sample.
     pub fn observe(&mut self, value: &SVector<f64, AXES>, time_us: u64) {
         let elapsed_s = seconds(self.time_us, time_us);

@@ -40,6 +40,11 @@ impl PastMotion {
         seen
     }
 
+    /// The same motion elsewhere, m.
+    pub fn shift(&mut self, by_m: &Vector3<f64>) {
+        self.begin.position_m += by_m;
+    }
+
     /// The jerk jumps once more. When there is no more room the oldest jump is forgotten: it counts as if it had always been.
     pub fn jump(&mut self, time_s: f64, by_m_s3: &Vector3<f64>) {
         if self.count == JUMPS {

@@ -70,6 +70,15 @@ impl Guidance {
         Self::Direct(DirectReference::new(now, time_us))
     }
 
+    /// The input is elsewhere, m, and what is tracked as well: that is no motion.
+    pub fn shift(&mut self, by_m: &Vector3<f64>) {
+        match self {
+            #[cfg(feature = "shaper")]
+            Self::Shaped(shaper) => shaper.shift(by_m),
+            Self::Direct(direct) => direct.shift(by_m),
+        }
+    }
+
     /// A look at the input between samples.
     pub fn watch(&mut self, reference: &PositionReference, limits: &Limits, time_us: u64) {
         if let Self::Direct(direct) = self {

@@ -103,6 +103,11 @@ impl ReferencePlan {
         heading.on(&piece.reference().after(time_s - start_s))
     }
 
+    /// The same way elsewhere, m.
+    pub(crate) fn shift(&mut self, by_m: &Vector3<f64>) {
+        self.pieces.iter_mut().for_each(|(_, piece)| piece.position_m += by_m);
+    }
+
     /// The same headings, counted so that the one at a time, µs, is nearest to an angle, rad.
     pub(crate) fn near_heading(self, yaw_rad: f64, time_us: u64) -> Self {
         let planned_rad = self.at(time_us).yaw_rad;

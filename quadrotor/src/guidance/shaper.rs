@@ -121,6 +121,12 @@ impl Shaper {
         (self.start_us, self.goal, self.offset_m, self.plan) = (time_us, *goal, Vector3::zeros(), plan);
     }
 
+    /// Goal and plan are elsewhere, m.
+    pub fn shift(&mut self, by_m: &Vector3<f64>) {
+        self.goal.position_m += by_m;
+        self.plan.shift(by_m);
+    }
+
     /// Whether the plan keeps the limits that are wanted.
     pub fn keeps_limits(&self) -> bool {
         of_way(self.limits.wanted()) == of_way(self.limits.kept())

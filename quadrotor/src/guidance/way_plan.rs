@@ -163,6 +163,14 @@ impl WayPlan {
         self
     }
 
+    /// The same plan elsewhere, m.
+    pub fn shift(&mut self, by_m: &Vector3<f64>) {
+        let horizontal = self.turn.inverse() * by_m.xy();
+        let by = [horizontal.x, horizontal.y, by_m.z];
+        self.axes = core::array::from_fn(|axis| self.axes[axis].moved(by[axis]));
+        self.past.iter_mut().for_each(|past| past.shift(by_m));
+    }
+
     /// Whether nothing moves, up to rounding.
     fn rests_at(&self, time_s: f64) -> bool {
         let rests = |motion: &PositionReference| {

@@ -9,6 +9,9 @@ use autopilot::codec::Frame;
 use crate::failure::Failure;
 use crate::files::{FileLock, Notice, Spool, Upkeep};
 
+/// How often frames reach the disk by their own time, µs; by the wall clock they do when [`TrafficLog::flush`] is called.
+const FLUSH_US: u64 = 1_000_000;
+
 /// A log of all traffic. When its file is full it becomes `NAME.1.tlog`, `NAME.2.tlog` and so on, and a new one begins;
 /// of these the oldest are removed.
 #[derive(Debug)]
@@ -19,6 +22,7 @@ pub struct TrafficLog {
     most_bytes: u64,
     most_files: usize,
     full: u64,
+    flushed_us: u64,
     /// Why the next file could not be begun: the present one goes on until the next flush.
     stuck: Option<io::Error>,
     /// Frames that there was no room for.
@@ -41,6 +45,7 @@ impl TrafficLog {
             most_bytes,
             most_files,
             full: 0,
+            flushed_us: 0,
             stuck: None,
             lost: 0,
             _lock: lock,
@@ -56,6 +61,12 @@ impl TrafficLog {
         }
         if !self.spool.append(&entry) {
             self.lost += 1;
+        }
+        // Simulated seconds may be shorter than those of the wall clock.
+        if unix_us >= self.flushed_us.saturating_add(FLUSH_US) && !self.upkeep.is_failing() {
+            self.flushed_us = unix_us;
+            // The next flush by the wall clock tries again and reports.
+            let _told_then = self.spool.flush();
         }
     }
 
@@ -100,6 +111,24 @@ mod tests {
 
     use super::TrafficLog;
     use autopilot::codec::{Frame, Version};
+
+    #[test]
+    fn frames_reach_the_disk_after_a_second_of_their_own_time() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("traffic.tlog");
+        let message = MavMessage::HEARTBEAT(HEARTBEAT_DATA::default()).into();
+        let frame = Frame::encode(&message, Version::Two, 0, (1, 1)).expect("a frame");
+        let mut log = TrafficLog::create(&path, 1 << 20, 2).expect("a file");
+        let start_us = 1_700_000_000_000_000;
+        for (after_us, on_disk) in
+            [(0, 1), (500_000, 1), (999_999, 1), (1_000_000, 4), (1_400_000, 4), (2_000_000, 6)]
+        {
+            log.frame(start_us + after_us, &frame);
+            let length = std::fs::metadata(&path).expect("a file").len();
+            assert_eq!(length, on_disk * (8 + frame.bytes().len() as u64), "after {after_us} µs");
+        }
+        assert_eq!(log.finish(), None);
+    }
 
     #[test]
     fn full_files_make_room_and_no_frame_is_split_or_lost_among_those_kept() {

@@ -1,6 +1,6 @@
 //! The closed loop in its wind.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 use quadrotor::{
     Configuration, ConfigurationError, Disturbance, EasedLimits, Inputs, Outputs, RigidBody, RotorFault,
     Simulation, StabilityWarning,
@@ -129,6 +129,13 @@ impl ClosedLoop {
     /// Velocity of the air, NED, m/s.
     pub fn wind_m_s(&self) -> Vector3<f64> {
         self.wind_m_s
+    }
+
+    /// The position that is known is elsewhere, m north and east, and the reference with it: nothing has moved.
+    pub fn slide(&mut self, slid_m: &Vector2<f64>) {
+        if let Err(error) = self.simulation.shift_positions(&Vector3::new(slid_m.x, slid_m.y, 0.0)) {
+            tracing::error!(%error, "the estimated place has leapt out of the range of numbers");
+        }
     }
 
     /// Flies on by `duration_us`, as it is steered.

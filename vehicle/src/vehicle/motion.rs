@@ -23,6 +23,10 @@ const JERK_PER_RATE: f64 = 2.0;
 /// An error below this, m or rad, counts as none once it rests.
 const ARRIVED: f64 = 1e-6;
 
+/// With less than this missing of a velocity, m/s, and less acceleration, m/s², it counts as reached.
+const REACHED_M_S: f64 = 1e-6;
+const REACHED_M_S2: f64 = 1e-5;
+
 /// A difference of speed that does not matter, m/s, and one of the yaw rate, rad/s.
 const SMALL_M_S: f64 = 0.05;
 const SMALL_RAD_S: f64 = 0.02;
@@ -109,8 +113,10 @@ impl Motion {
             let (v, a) = (self.state.velocity_m_s[axis], self.state.acceleration_m_s2[axis]);
             self.state.position_m[axis] += (v + a / 2.0 * dt_s) * dt_s;
             self.state.velocity_m_s[axis] += a * dt_s;
-            if let AxisTarget::Position(goal) = self.set_point.axes[axis] {
-                self.settle(axis, goal);
+            match self.set_point.axes[axis] {
+                AxisTarget::Position(goal) => self.settle(axis, goal),
+                AxisTarget::Velocity(wanted) => self.keep(axis, wanted),
+                AxisTarget::Acceleration(_) | AxisTarget::Track { .. } => {}
             }
         }
         self.turn(limits, dt_s);
@@ -182,6 +188,15 @@ impl Motion {
         if rests && (goal - self.state.position_m[axis]).abs() < ARRIVED {
             self.state.position_m[axis] = goal;
             self.state.velocity_m_s[axis] = 0.0;
+            self.state.acceleration_m_s2[axis] = 0.0;
+        }
+    }
+
+    /// A velocity that is as good as reached is kept exactly, so that what has stopped rests.
+    fn keep(&mut self, axis: usize, wanted: f64) {
+        let is_near = (wanted - self.state.velocity_m_s[axis]).abs() < REACHED_M_S;
+        if is_near && self.state.acceleration_m_s2[axis].abs() < REACHED_M_S2 {
+            self.state.velocity_m_s[axis] = wanted;
             self.state.acceleration_m_s2[axis] = 0.0;
         }
     }

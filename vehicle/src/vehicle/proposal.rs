@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector3;
 use quadrotor::{Heading, PositionReference};
 
 use super::failsafe::Cause;
@@ -223,15 +223,6 @@ impl<'a> Proposal<'a> {
         let heading = HeadingPolicy::of(situation).guided(situation);
         if heading.is_some() || self.steering.follows_heading() {
             self.turn_on(heading);
-        }
-    }
-
-    /// Moves a reference that only stays where it is, or goes as sticks say, with the position that is known, m.
-    pub fn slide(&mut self, slid_m: &Vector2<f64>) {
-        if matches!(*self.steering, Steering::Motion(_))
-            && let Steering::Motion(motion) = self.steering.to_mut()
-        {
-            motion.slide(slid_m);
         }
     }
 

@@ -186,8 +186,9 @@ impl Vehicle {
         let aiding = || self.setup.aiding();
         self.perception.step(closed_loop, self.setup.world(), &faults, errors, aiding, stands);
         let slid_m = self.perception.slid_m();
-        if slid_m != Vector2::zeros() && self.mode().holds_a_felt_place() {
-            self.consult(|_, _, proposal| proposal.slide(&slid_m));
+        let slides = slid_m != Vector2::zeros() && self.mode().holds_a_felt_place();
+        if slides && self.decided.steering_to_fly().slide(&slid_m) {
+            self.closed_loop.slide(&slid_m);
         }
     }
 

@@ -1,6 +1,6 @@
 //! What the closed loop is told, tick by tick.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector2, Vector3};
 use quadrotor::{AttitudeTarget, EasedLimits, Heading, Inputs, Outputs, PositionReference, Simulation};
 
 use super::motion::{Motion, at_rest};
@@ -178,6 +178,14 @@ impl Steering {
                 ..at_rest(outputs.position_m, outputs.attitude_rad.z)
             },
         }
+    }
+
+    /// Moves a reference that only stays where it is, or goes as sticks say, with the position that is known, m north and east.
+    /// Returns whether it is one.
+    pub fn slide(&mut self, slid_m: &Vector2<f64>) -> bool {
+        let Self::Motion(motion) = self else { return false };
+        motion.slide(slid_m);
+        true
     }
 
     /// Where it comes to rest, if it is to.

@@ -193,6 +193,11 @@ impl MassAndDrag {
         self.latest_us = None;
     }
 
+    /// All positions are elsewhere, m, and nothing has moved.
+    pub(crate) fn shift(&mut self, by_m: &Vector3<f64>) {
+        self.equation.shift(by_m);
+    }
+
     /// Learns from an instant of a flight; whether that may have changed what is believed in.
     pub(crate) fn observe(&mut self, configuration: &Configuration, sample: &FlightSample<'_>) -> bool {
         if !configuration.controllers.learning {

@@ -135,6 +135,13 @@ impl MotionEquation {
         self.last.map(|last| last.time_us)
     }
 
+    /// The origin of positions is elsewhere: they are by so much more, m.
+    pub(crate) fn shift(&mut self, by_m: &Vector3<f64>) {
+        if let Some(Sampled { motion: MeasuredMotion::Position(position_m), .. }) = &mut self.last {
+            *position_m += by_m;
+        }
+    }
+
     /// Takes in an instant and returns the filtered equation of the interval that ends, if a whole one does.
     pub(crate) fn observe(&mut self, now: Sampled) -> Option<Terms> {
         let last = self.last.replace(now)?;
