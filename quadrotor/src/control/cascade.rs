@@ -185,7 +185,7 @@ impl Cascade {
         let period_us = configuration.controllers.position.sample_time_us;
         let vertical = self.acceleration_m_s2().z;
         let lean_rad = self.reference_lean_rad(configuration);
-        let is_bent = self.followed.gives_way();
+        let (is_bent, is_narrow) = (self.followed.gives_way(), self.narrowed.is_narrow());
         let motion = |reference: &PositionReference, interval_s: f64| {
             let required = RequiredThrust::of(configuration, reference, lean_rad);
             ReferenceMotion {
@@ -198,6 +198,7 @@ impl Cascade {
                 thrust_snap: required.snap_m_s4.xy(),
                 interval_s,
                 is_bent,
+                is_narrow,
             }
         };
         let now = motion(reference, interval_s(&mut self.sampled.position_us, time_us, period_us));
@@ -248,6 +249,7 @@ impl Cascade {
             thrust_snap: axis(&required.snap_m_s4),
             interval_s: interval_s(&mut self.sampled.altitude_us, time_us, period_us),
             is_bent: self.followed.gives_way(),
+            is_narrow: self.narrowed.is_narrow(),
         };
         let range = vertical_range(configuration, upright(&seen.body));
         let (applied, activity) = self.altitude.step(configuration, design, &seen.vertical(), &motion, range);

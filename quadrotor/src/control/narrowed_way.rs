@@ -10,6 +10,8 @@ use crate::{Configuration, GRAVITY_M_S2, PositionReference, commanded_tilt_rad};
 /// [`FollowedWay`](crate::control::followed_way::FollowedWay) do with peaks. Of what the thrust allows up and down no more is followed: more
 /// on one side than on the other would push the vehicle to that side.
 const FOLLOWED: f64 = 1.3;
+/// With a smaller share of the horizontal motion than that, what is followed leaves room for the feedback.
+const NARROW: f64 = 0.9;
 /// Share of the angular acceleration that the rotors have in hover which is followed, whatever the limits allow: feedback that has none
 /// left turns the vehicle over.
 const OF_AVAILABLE: f64 = 0.9;
@@ -63,6 +65,11 @@ struct Narrowing {
 }
 
 impl NarrowedWay {
+    /// Whether so little of the horizontal motion is followed that it leaves room within the limits.
+    pub(crate) fn is_narrow(&self) -> bool {
+        self.narrowing.is_some_and(|narrowing| narrowing.share[0].x < NARROW)
+    }
+
     /// Goes on to a reference at a time, µs, with an angular acceleration of roll and pitch that the rotors have in hover, rad/s². What
     /// is followed then, unless it is the reference itself.
     pub(crate) fn follow(

@@ -31,6 +31,9 @@ const CATCHING_UP: f64 = 0.01;
 const LEAST_CATCHING_UP_M_S: f64 = 0.05;
 /// The same of a reference that is faster than the limit, which is another's plan.
 const CATCHING_UP_WITH_FASTER: f64 = 0.1;
+/// How much more jerk than a reference that limits bend the feedback may use, as a share of the limit. Such a reference turns at the limit
+/// all the way round: a plan of a few functions of time, kept to it at each sample, would never come back to its way.
+const TURNING_BACK: f64 = 0.5;
 /// What rounding makes of a reference at the speed limit.
 const ROUNDING: f64 = 1.0 + 1e-6;
 /// With how much snap per jerk the attitude loop answers at most when the jerk of the reference jumps, 1/s.
@@ -93,6 +96,8 @@ pub(crate) struct Asked {
     pub(crate) jerk_m_s3: f64,
     /// Snap, m/s⁴.
     pub(crate) snap_m_s4: f64,
+    /// Whether limits bend it, and hardly any of it is left out for that.
+    pub(crate) is_held: bool,
 }
 
 /// Values of [`position_limits`], the commanded acceleration being at most `present_m_s2` now and `lasting_m_s2` later on, under what the
@@ -103,11 +108,12 @@ pub(crate) fn position_bounds(
     asked: &Asked,
     under_way: TurnUnderWay,
 ) -> [f64; POSITION_BOUNDS] {
-    let turning = with_faster(GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2, asked.snap_m_s4)
-        .max(under_way.snap_m_s4)
+    let [most_m_s3, most_m_s4] =
+        [limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2].map(|limit| GRAVITY_M_S2 * limit);
+    let turning = with_faster(most_m_s4, asked.snap_m_s4, CATCHING_UP_WITH_FASTER).max(under_way.snap_m_s4)
         + ANSWER_1_S * under_way.jump_m_s3;
-    let leaning =
-        with_faster(GRAVITY_M_S2 * limits.tilt_rate_rad_s, asked.jerk_m_s3).max(under_way.jerk_m_s3);
+    let share = if asked.is_held { TURNING_BACK } else { CATCHING_UP_WITH_FASTER };
+    let leaning = with_faster(most_m_s3, asked.jerk_m_s3, share).max(under_way.jerk_m_s3);
     let speed = most_speed_m_s(limits.speed_horizontal_m_s, asked.speed_m_s);
     core::array::from_fn(|bound| match bound {
         ..SIDES => present_m_s2,
@@ -145,9 +151,9 @@ pub(crate) fn most_speed_m_s(limit_m_s: f64, asked_m_s: f64) -> f64 {
     limit_m_s.max(asked_m_s + catching_up_m_s(limit_m_s, asked_m_s))
 }
 
-/// A limit, or more than a reference that asks for more than it.
-fn with_faster(limit: f64, asked: f64) -> f64 {
-    if asked > ROUNDING * limit { asked + CATCHING_UP_WITH_FASTER * limit } else { limit }
+/// A limit, or by a share of it more than a reference that asks for more than it.
+fn with_faster(limit: f64, asked: f64, share: f64) -> f64 {
+    if asked > ROUNDING * limit { asked + share * limit } else { limit }
 }
 
 fn catching_up_m_s(limit_m_s: f64, asked_m_s: f64) -> f64 {
@@ -235,11 +241,18 @@ mod tests {
         let limits = Limits::default();
         let [leaning, turning] =
             [limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2].map(|limit| GRAVITY_M_S2 * limit);
-        for (share, expected) in [(0.9, 1.0), (1.0, 1.0), (1.5, 1.6)] {
-            let asked = Asked { jerk_m_s3: share * leaning, snap_m_s4: share * turning, ..Asked::default() };
+        for (is_held, share, turned, leant) in [
+            (false, 0.9, 1.0, 1.0),
+            (false, 1.0, 1.0, 1.0),
+            (false, 1.5, 1.6, 1.6),
+            (true, 0.9, 1.0, 1.0),
+            (true, 1.5, 1.6, 2.0),
+        ] {
+            let (jerk_m_s3, snap_m_s4) = (share * leaning, share * turning);
+            let asked = Asked { jerk_m_s3, snap_m_s4, is_held, ..Asked::default() };
             let bounds = position_bounds(&limits, (5.0, 4.0), &asked, TurnUnderWay::default());
-            assert!((bounds[2 * SIDES] / turning - expected).abs() < 1e-12);
-            assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - expected).abs() < 1e-12);
+            assert!((bounds[2 * SIDES] / turning - turned).abs() < 1e-12);
+            assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - leant).abs() < 1e-12);
         }
     }
 

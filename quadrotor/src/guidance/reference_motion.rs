@@ -24,6 +24,8 @@ pub struct ReferenceMotion<const AXES: usize> {
     pub interval_s: f64,
     /// Whether limits bend it: it jumps in its jerk where they begin to hold it, and where they end.
     pub is_bent: bool,
+    /// Whether so much of it is left out that the rest leaves room within the limits.
+    pub is_narrow: bool,
 }
 
 /// Nothing has been tracked yet: at rest.
@@ -40,6 +42,7 @@ impl<const AXES: usize> Default for ReferenceMotion<AXES> {
             thrust_snap: zero,
             interval_s: 0.0,
             is_bent: false,
+            is_narrow: false,
         }
     }
 }
