@@ -118,7 +118,13 @@ impl PositionController {
             disturbance_m_s2,
             delay_s: BrakingWay::delay_s(&configuration.limits),
         });
-        let lean = (present_m_s2, lasting.beside(asked.thrust_m_s2));
+        // A reference that limits bend does not wait for later.
+        let lasting_m_s2 = if reference.is_bent || reference.is_at_rest() {
+            lasting.beside(asked.thrust_m_s2)
+        } else {
+            lasting.later_beside(asked.thrust_m_s2)
+        };
+        let lean = (present_m_s2, lasting_m_s2);
         let bounds = position_bounds(&configuration.limits, lean, &asked, under_way);
         let sample = Sample {
             measured: turn.state(&measured),

@@ -8,7 +8,7 @@ use crate::common::{STEP_US, fly, tilt_rad, unshaped};
 use nalgebra::Vector3;
 use quadrotor::{
     Airframe, AirframePreset, Configuration, ControllerKind, FlatAttitude, Inputs, Limits, Mixer, Plant,
-    PlantInputs, PlantState, PositionReference, Simulation, Wrench,
+    PlantInputs, PlantState, PositionReference, Sensors, Simulation, Wrench,
 };
 
 /// x = A sin(ω t + c) on each horizontal axis.
@@ -121,6 +121,36 @@ fn held_inputs_are_followed_as_continuous_ones() {
             };
             assert!((rms - whole).abs() < more_m, "each {period_us} µs: {rms} m, not {whole} m");
         }
+    }
+}
+
+/// A circle that needs 0.86 of the largest lean leaves noise less room on its outer side. Noise alone moves the vehicle by 1.3 cm there, and
+/// may not take away from the acceleration of the reference: DLQR, whose commands are cut off, is 1.4 cm off.
+#[test]
+fn noise_takes_nothing_away_from_a_reference_near_the_largest_lean() {
+    let circle = Trajectory::circle(1.2);
+    for (tilt_rad, most_m) in [(1.2, 0.015), (Limits::default().tilt_rad, 0.025)] {
+        let mut configuration = open(&circle);
+        configuration.limits = Limits { tilt_rad, speed_horizontal_m_s: 20.0, ..Limits::default() };
+        configuration.sensors = Sensors {
+            position_noise_m: 0.02,
+            velocity_noise_m_s: 0.05,
+            attitude_noise_rad: 0.005,
+            body_rate_noise_rad_s: 0.02,
+            ..Sensors::default()
+        };
+        let inputs =
+            |time_us: u64| Inputs { reference: circle.reference(time_us, true), ..Inputs::default() };
+        let (mut square, mut count) = (0.0, 0.0);
+        fly(&configuration, &inputs, 30.0, |outputs| {
+            if outputs.time_us > 5_000_000 {
+                square +=
+                    (outputs.position_m - circle.reference(outputs.time_us, false).position_m).norm_squared();
+                count += 1.0;
+            }
+        });
+        let rms_m = f64::sqrt(square / count);
+        assert!(rms_m < most_m, "tilt limit {tilt_rad} rad: {rms_m} m");
     }
 }
 

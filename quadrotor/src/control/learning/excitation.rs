@@ -28,7 +28,15 @@ pub(crate) struct Shown {
 /// follow noise. A mass shows where the acceleration changes with the thrust; drag where the speed changes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Excitation {
-    steady: Option<Moving>,
+    steady: Option<Steady>,
+}
+
+/// What is steady, and how well that is known.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Steady {
+    motion: Moving,
+    /// Deviation of the acceleration with which it began, m/s².
+    deviation_m_s2: f64,
 }
 
 /// What changes in flight.
@@ -50,20 +58,25 @@ impl Excitation {
     /// By how much the velocity in the equation of an interval differs from the steady one, NED, m/s.
     pub(crate) fn change_of_speed_m_s(&self, terms: &Terms) -> Vector3<f64> {
         let now = Moving::of(terms);
-        now.speed_m_s - self.steady.unwrap_or(now).speed_m_s
+        now.speed_m_s - self.steady.map_or(now, |steady| steady.motion).speed_m_s
     }
 
     /// What the equation of an interval shows under noise of this deviation, m/s².
+    ///
+    /// Of a filter that is hardly filled, noise is a large share. What is steady begins anew when it is known twice as well.
     pub(crate) fn observe(&mut self, terms: &Terms, interval_s: f64, noise_m_s2: f64) -> Shown {
         let now = Moving::of(terms);
-        let steady = self.steady.get_or_insert(now);
+        let deviation_m_s2 = noise_m_s2 / terms.filled.max(f64::EPSILON);
+        let known = self.steady.filter(|steady| deviation_m_s2 > steady.deviation_m_s2 / 2.0);
+        let known = self.steady.insert(known.unwrap_or(Steady { motion: now, deviation_m_s2 }));
+        let least_m_s2 = MASS_M_S2 + MASS_DEVIATIONS * libm::hypot(deviation_m_s2, known.deviation_m_s2);
+        let steady = &mut known.motion;
         let share = -libm::expm1(-interval_s / STEADY_S);
         steady.thrust_m_s2 += (now.thrust_m_s2 - steady.thrust_m_s2) * share;
         steady.acceleration_m_s2 += (now.acceleration_m_s2 - steady.acceleration_m_s2) * share;
         steady.speed_m_s += (now.speed_m_s - steady.speed_m_s) * share;
         let thrust_m_s2 = libm::fabs(now.thrust_m_s2 - steady.thrust_m_s2);
         let along_m_s2 = libm::fabs(now.acceleration_m_s2 - steady.acceleration_m_s2);
-        let least_m_s2 = MASS_M_S2 + MASS_DEVIATIONS * noise_m_s2;
         let drag =
             core::array::from_fn(|axis| libm::fabs(now.speed_m_s[axis] - steady.speed_m_s[axis]) > DRAG_M_S);
         Shown { mass: thrust_m_s2.min(along_m_s2) > least_m_s2, drag }
