@@ -16,7 +16,7 @@ use chacha20::rand_core::{Rng, SeedableRng};
 use clap::Parser;
 use nalgebra::Vector3;
 use paper::bars::{Demand, Flyer, Moment, Path, Plan, Points, Row, Shape, Track, fly, largest, rms};
-use quadrotor::{AirframePreset, Configuration};
+use quadrotor::{AirframePreset, Configuration, Sensors};
 use rayon::prelude::*;
 
 /// Flies random flights by family.
@@ -84,7 +84,7 @@ struct Family {
     change: fn(&mut Draw, &mut Plan),
 }
 
-const FAMILIES: [Family; 13] = [
+const FAMILIES: [Family; 16] = [
     Family { name: "goal", change: goal },
     Family { name: "wind", change: wind },
     Family { name: "low-tilt", change: low_tilt },
@@ -98,6 +98,9 @@ const FAMILIES: [Family; 13] = [
     Family { name: "jumps", change: jumps },
     Family { name: "to-and-fro", change: to_and_fro },
     Family { name: "tilted-start", change: tilted_start },
+    Family { name: "noisy-path", change: noisy_path },
+    Family { name: "noisy-goal", change: noisy_goal },
+    Family { name: "wrong-mass", change: wrong_mass },
 ];
 
 const LEVEL: [Shape; 2] = [Shape::FigureEight, Shape::Circle];
@@ -177,6 +180,38 @@ fn tilted_start(draw: &mut Draw, plan: &mut Plan) {
     let initial = &mut plan.configuration.initial;
     initial.attitude_rad = [draw.between(-0.5, 0.5), draw.between(-0.5, 0.5), draw.between(-3.0, 3.0)];
     initial.velocity_m_s = draw.place_m(1.0, 1.0).map(|value| 2.0 * value);
+}
+
+fn noisy_path(draw: &mut Draw, plan: &mut Plan) {
+    path(draw, plan, (0.5, 6.0), (0.3, 1.2), &ALL);
+    noisy(draw, plan);
+}
+
+fn noisy_goal(draw: &mut Draw, plan: &mut Plan) {
+    goal(draw, plan);
+    noisy(draw, plan);
+}
+
+/// Noise of a good to a bad receiver and inertial unit, with all states measured or outputs alone.
+fn noisy(draw: &mut Draw, plan: &mut Plan) {
+    let size = draw.scaled(0.1, 1.5);
+    plan.configuration.sensors = Sensors {
+        output_feedback: draw.one_of(&[false, true]),
+        position_noise_m: 0.02 * size,
+        velocity_noise_m_s: 0.05 * size,
+        attitude_noise_rad: 0.005 * size,
+        body_rate_noise_rad_s: 0.02 * size,
+        seed: draw.0.next_u32() % 1000,
+        ..plan.configuration.sensors
+    };
+}
+
+fn wrong_mass(draw: &mut Draw, plan: &mut Plan) {
+    match draw.one_of(&[false, true]) {
+        true => path(draw, plan, (0.5, 6.0), (0.3, 1.0), &ALL),
+        false => goal(draw, plan),
+    }
+    plan.configuration.controllers.mass_factor = draw.scaled(0.6, 1.4);
 }
 
 /// Numbers of a flight, the smaller the better.

@@ -344,7 +344,12 @@ impl ControlState {
         } else {
             self.believed(&design.configuration)
         };
-        let seen = Observation::new(configuration, &self.estimator, &measurement.motion, time_us);
+        let seen = Observation::new(
+            configuration,
+            (&self.estimator, design.cascade.estimator.disturbance_lag_s),
+            &measurement.motion,
+            time_us,
+        );
         match &inputs.target {
             Target::Reference(reference) => {
                 // A way that is passed on is followed by each command; a shaped one waits for those that plan.

@@ -19,6 +19,8 @@ pub(crate) struct Observation {
     lift_m_s2: f64,
     /// Acceleration that the thrust does not explain, NED, m/s².
     disturbance_m_s2: Vector3<f64>,
+    /// How far that lags behind what it is, s.
+    disturbance_lag_s: f64,
     /// Angular acceleration that the torques do not explain, FRD, rad/s².
     disturbance_rad_s2: Vector3<f64>,
     /// Speeds that the rotors have reached by their model, rad/s.
@@ -28,10 +30,10 @@ pub(crate) struct Observation {
 }
 
 impl Observation {
-    /// Of a measurement, beside what has been estimated until now.
+    /// Of a measurement, beside what has been estimated until now, with a lag of disturbances, s.
     pub(crate) fn new(
         configuration: &Configuration,
-        estimator: &Estimator,
+        (estimator, disturbance_lag_s): (&Estimator, f64),
         measured: &RigidBody,
         time_us: u64,
     ) -> Self {
@@ -43,6 +45,7 @@ impl Observation {
             body,
             lift_m_s2: made.thrust_n / configuration.believed_mass_kg(),
             disturbance_m_s2: estimator.disturbance_m_s2(),
+            disturbance_lag_s,
             disturbance_rad_s2: estimator.disturbance_rad_s2(),
             rotor_speed_rad_s,
             rotor_torque_n_m: made.torque_n_m,
@@ -70,6 +73,7 @@ impl Observation {
             snap_m_s4: turned(&turning) + going_on.xy(),
             asked_snap_m_s4: turned(asked_rad_s2),
             disturbance_m_s2: self.disturbance_m_s2.xy(),
+            disturbance_lag_s: self.disturbance_lag_s,
             disturbance_m_s4: turned(&self.disturbance_rad_s2),
         }
     }
@@ -126,7 +130,7 @@ mod tests {
             body_rate_rad_s: rate,
         };
         let estimator = Estimator::new(&configuration.sensors, &body, rotor_speed_rad_s, 0);
-        let seen = Observation::new(&configuration, &estimator, &body, 0);
+        let seen = Observation::new(&configuration, (&estimator, 0.0), &body, 0);
         let asked_rad_s2 = Vector3::new(-1.5, 0.5, 0.0);
         let motion = seen.horizontal(&configuration, &asked_rad_s2);
         assert_eq!((motion.position_m, motion.velocity_m_s), (body.position_m.xy(), body.velocity_m_s.xy()));

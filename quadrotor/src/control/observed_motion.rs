@@ -78,11 +78,13 @@ pub(crate) struct ObservedMotion<const N: usize, const P: usize> {
     deviation: SVector<f64, N>,
     /// d, accelerations that the model does not explain.
     disturbance: SVector<f64, P>,
+    /// What of it has lasted.
+    lasting: SVector<f64, P>,
 }
 
 impl<const N: usize, const P: usize> Default for ObservedMotion<N, P> {
     fn default() -> Self {
-        Self { deviation: SVector::zeros(), disturbance: SVector::zeros() }
+        Self { deviation: SVector::zeros(), disturbance: SVector::zeros(), lasting: SVector::zeros() }
     }
 }
 
@@ -102,7 +104,7 @@ pub(crate) struct MotionSample<const N: usize, const P: usize> {
 impl<const N: usize, const P: usize> ObservedMotion<N, P> {
     /// With a deviation at the last sample and a disturbance.
     pub(crate) fn new(deviation: SVector<f64, N>, disturbance: SVector<f64, P>) -> Self {
-        Self { deviation, disturbance }
+        Self { deviation, disturbance, lasting: disturbance }
     }
 
     /// d.
@@ -144,11 +146,18 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
     /// what an acceleration explains more, d explains less. The motion itself is what it was.
     pub(crate) fn believe(&mut self, more: &SVector<f64, N>) {
         let believed = self.deviation + more;
-        let disturbance: SVector<f64, P> =
-            SVector::from_fn(|channel, _| self.disturbance[channel] - more[N / P * channel + 2]);
+        let less: SVector<f64, P> = SVector::from_fn(|channel, _| more[N / P * channel + 2]);
+        let (disturbance, lasting) = (self.disturbance - less, self.lasting - less);
         if are_finite(believed.as_slice()) && are_finite(disturbance.as_slice()) {
-            (self.deviation, self.disturbance) = (believed, disturbance);
+            *self = Self { deviation: believed, disturbance, lasting };
         }
+    }
+
+    /// What of the last increment comes from a disturbance that has not lasted for as long as a lag, s: A⁻¹ E (d − d̄), d̄ following d with
+    /// that lag. Under noise, nobody knows it for a force sooner.
+    pub(crate) fn passing(&mut self, model: &MotionModel<N, P>, lag_s: f64) -> SVector<f64, N> {
+        self.lasting += (self.disturbance - self.lasting) * -libm::expm1(-model.sample_time_s / lag_s);
+        model.inverse * model.by_disturbance * (self.disturbance - self.lasting)
     }
 
     /// The increment Δx(k) of the motion that leads to the deviation:

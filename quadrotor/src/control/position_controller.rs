@@ -107,6 +107,13 @@ impl PositionController {
         };
         let sample_time_s = configuration.controllers.position.sample_time_s();
         let increment = self.observed.step(design.position.motion.as_ref(), &motion, sample_time_s);
+        // Noise looks like a force that comes and goes. A plan that took it to last would keep off limits that are not near.
+        let passing = match &design.position.motion {
+            Some(model) if seen.disturbance_lag_s > 0.0 && law.regulator().is_none() => {
+                self.observed.passing(model, seen.disturbance_lag_s)
+            }
+            _ => SVector::zeros(),
+        };
         let under_way =
             self.thrown.turn_under_way(seen, &turning, (design.attitude_loop(), sample_time_s), &jerk_jump);
         let (error_m, disturbance_m_s2) = (turn.vector(&error), turn.vector(&seen.disturbance_m_s2));
@@ -128,7 +135,7 @@ impl PositionController {
         let bounds = position_bounds(&configuration.limits, lean, &asked, under_way);
         let sample = Sample {
             measured: turn.state(&measured),
-            increment: turn.state(&increment),
+            increment: turn.state(&(increment - passing)),
             // What disturbs the vehicle accelerates it, too.
             deviation: turn
                 .state(&(deviation + by_axis([zero, zero, seen.disturbance_m_s2, zero, zero, zero]))),
@@ -139,25 +146,26 @@ impl PositionController {
             moved: moved.as_ref().map_or(&[], MovedSignals::values),
             ..Sample::default()
         };
-        let step = self.step_along(law, &turn, &sample);
+        let step = self.step_along(law, &turn, &sample, &turn.state(&passing));
         self.reference = *reference;
         let applied = step.input.cap_magnitude(present_m_s2);
         self.controller.apply(&applied);
         (applied, ControllerActivity::of(&step, &step.input, &applied))
     }
 
-    /// A step of the law for a sample in turned axes; its input is in those of the world.
+    /// A step of the law for a sample in turned axes, and its answer to what of the motion passes; its input is in those of the world.
     fn step_along(
         &mut self,
         law: &PositionLaw,
         turn: &Turn,
         sample: &Sample<'_, POSITION_STATES, 2, 2>,
+        passing: &SVector<f64, POSITION_STATES>,
     ) -> Step<2> {
         self.controller.turn(|state| turn.state(state), |input| turn.vector(input));
         let step = law.step(&mut self.controller, sample);
         let back = turn.inverse();
         self.controller.turn(|state| back.state(state), |input| back.vector(input));
-        Step { input: back.vector(&step.input), ..step }
+        Step { input: back.vector(&(step.input + law.answer_to(passing))), ..step }
     }
 
     /// Vehicle and reference are elsewhere, m: neither has moved.

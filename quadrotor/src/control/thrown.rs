@@ -67,6 +67,7 @@ mod tests {
             asked_snap_m_s4: zero,
             disturbance_m_s2: zero,
             disturbance_m_s4: zero,
+            disturbance_lag_s: 0.0,
         }
     }
 

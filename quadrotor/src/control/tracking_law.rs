@@ -96,6 +96,15 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
         }
     }
 
+    /// What a law under limits asks for beside its plan when an increment comes to it that the plan need not foresee: −K Δx.
+    pub(crate) fn answer_to(&self, increment: &SVector<f64, N>) -> SVector<f64, P> {
+        match self {
+            Self::FewTerms(law) => law.unconstrained().state_gain() * -increment,
+            Self::ManyTerms(law) => law.unconstrained().state_gain() * -increment,
+            Self::StateSpace(_) | Self::Linear(_) => SVector::zeros(),
+        }
+    }
+
     /// One sample.
     pub(crate) fn step(
         &self,

@@ -19,6 +19,8 @@ pub(crate) struct HorizontalMotion {
     pub(crate) asked_snap_m_s4: Vector2<f64>,
     /// Estimated acceleration that thrust and gravity do not explain, m/s².
     pub(crate) disturbance_m_s2: Vector2<f64>,
+    /// How far that lags behind what it is, s.
+    pub(crate) disturbance_lag_s: f64,
     /// Snap by the estimated angular acceleration that torques do not explain, m/s⁴.
     pub(crate) disturbance_m_s4: Vector2<f64>,
 }

