@@ -202,7 +202,6 @@ fn noisy(draw: &mut Draw, plan: &mut Plan) {
         attitude_noise_rad: 0.005 * size,
         body_rate_noise_rad_s: 0.02 * size,
         seed: draw.0.next_u32() % 1000,
-        ..plan.configuration.sensors
     };
 }
 
