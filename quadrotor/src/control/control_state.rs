@@ -1,6 +1,7 @@
 //! Everything that changes in a control loop, and one sample of it.
 
 mod law_in_force;
+mod learning;
 mod watching;
 
 use nalgebra::Vector3;
@@ -11,8 +12,7 @@ use crate::control::command_limits::CommandLimits;
 use crate::control::control_inputs::{ControlInputs, ControlLaw, Target};
 use crate::control::estimator::Estimator;
 use crate::control::instants::{Clocks, Due, LATEST_US, Phases};
-use crate::control::learning::mass_and_drag::{FlightSample, MassAndDrag};
-use crate::control::learning::motion_equation::MeasuredMotion;
+use crate::control::learning::mass_and_drag::MassAndDrag;
 use crate::control::measurement::Instruments;
 use crate::control::observation::Observation;
 use crate::control::rotor_command::RotorCommand;
@@ -144,14 +144,6 @@ impl ControlState {
             (clocks.first_sample_us(self.next_us), clocks.first_instant_us(self.next_us));
     }
 
-    /// Goes on with what was learned by now in place of what was believed before: the configuration that has it.
-    fn believe(&mut self, believed: &Configuration, configuration: &Configuration) -> Configuration {
-        let learned = self.believed(configuration);
-        self.cascade.believe(believed, &learned);
-        self.estimator.believe(believed, &learned);
-        learned
-    }
-
     /// Whether limits have been lowered that the present motion cannot keep yet.
     pub fn is_easing(&self) -> bool {
         self.limits.is_eased()
@@ -170,11 +162,6 @@ impl ControlState {
     /// The law that flies.
     pub fn law(&self) -> ControlLaw {
         self.law
-    }
-
-    /// What the controllers take for the vehicle: the configuration with mass and drag as they were learned.
-    pub(crate) fn believed(&self, configuration: &Configuration) -> Configuration {
-        self.learned.in_place_of_belief(configuration)
     }
 
     /// Commanded speeds of the rotors, rad/s, in the order of the airframe's layout.
@@ -381,42 +368,6 @@ impl ControlState {
             self.predict(&design.cascade, configuration, &seen, time_us);
         }
         Ok(())
-    }
-
-    /// Learns mass and drag from the motion until now, and goes on with the configuration that has them.
-    fn learn(
-        &mut self,
-        configuration: &Configuration,
-        measured: &RigidBody,
-        ground_z_m: f64,
-        time_us: u64,
-    ) -> Configuration {
-        let believed = self.believed(configuration);
-        let height_m = ground_z_m - measured.position_m.z;
-        if self.law == ControlLaw::RotorLoss {
-            self.learned.interrupt();
-            return believed;
-        }
-        let by_position = configuration.sensors.output_feedback;
-        let seen = self.estimator.seen(&configuration.sensors, measured, time_us);
-        let sample = FlightSample {
-            motion: if by_position {
-                MeasuredMotion::Position(measured.position_m)
-            } else {
-                MeasuredMotion::Velocity(measured.velocity_m_s)
-            },
-            height_m: configuration.environment.ground_plane.then_some(height_m),
-            velocity_m_s: seen.velocity_m_s,
-            attitude: seen.rotation(),
-            rotor_speed_rad_s: &self.estimator.rotor_speed_rad_s(),
-            rotor_command_rad_s: &self.command.speed_rad_s,
-            time_us,
-        };
-        if self.learned.observe(configuration, &sample) {
-            self.believe(&believed, configuration)
-        } else {
-            believed
-        }
     }
 
     /// Runs the cascade along a reference: the position, altitude and attitude controllers whose clocks tick.

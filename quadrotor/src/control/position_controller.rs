@@ -106,14 +106,8 @@ impl PositionController {
             jump: by_axis([zero, zero, zero, seen_jerk_jump, seen_snap_jump, zero]),
         };
         let sample_time_s = configuration.controllers.position.sample_time_s();
-        let increment = self.observed.step(design.position.motion.as_ref(), &motion, sample_time_s);
-        // Noise looks like a force that comes and goes. A plan that took it to last would keep off limits that are not near.
-        let passing = match &design.position.motion {
-            Some(model) if seen.disturbance_lag_s > 0.0 && law.regulator().is_none() => {
-                self.observed.passing(model, seen.disturbance_lag_s)
-            }
-            _ => SVector::zeros(),
-        };
+        let (lasting_increment, passing) =
+            self.increments(design, &motion, (sample_time_s, seen.disturbance_lag_s));
         let under_way =
             self.thrown.turn_under_way(seen, &turning, (design.attitude_loop(), sample_time_s), &jerk_jump);
         let (error_m, disturbance_m_s2) = (turn.vector(&error), turn.vector(&seen.disturbance_m_s2));
@@ -125,17 +119,11 @@ impl PositionController {
             disturbance_m_s2,
             delay_s: BrakingWay::delay_s(&configuration.limits),
         });
-        // A reference that limits bend does not wait for later.
-        let lasting_m_s2 = if reference.is_bent || reference.is_at_rest() {
-            lasting.beside(asked.thrust_m_s2)
-        } else {
-            lasting.later_beside(asked.thrust_m_s2)
-        };
-        let lean = (present_m_s2, lasting_m_s2);
+        let lean = (present_m_s2, lasting_m_s2(reference, &lasting, &asked));
         let bounds = position_bounds(&configuration.limits, lean, &asked, under_way);
         let sample = Sample {
             measured: turn.state(&measured),
-            increment: turn.state(&(increment - passing)),
+            increment: turn.state(&lasting_increment),
             // What disturbs the vehicle accelerates it, too.
             deviation: turn
                 .state(&(deviation + by_axis([zero, zero, seen.disturbance_m_s2, zero, zero, zero]))),
@@ -151,6 +139,24 @@ impl PositionController {
         let applied = step.input.cap_magnitude(present_m_s2);
         self.controller.apply(&applied);
         (applied, ControllerActivity::of(&step, &step.input, &applied))
+    }
+
+    /// The increment of a sample that limits go by, and what beside it only the feedback answers to. Noise looks like a force that comes and
+    /// goes: a plan that took it to last would keep off limits that are not near.
+    fn increments(
+        &mut self,
+        design: &CascadeDesign,
+        motion: &MotionSample<POSITION_STATES, 2>,
+        (sample_time_s, lag_s): (f64, f64),
+    ) -> (SVector<f64, POSITION_STATES>, SVector<f64, POSITION_STATES>) {
+        let model = design.position.motion.as_ref();
+        let increment = self.observed.step(model, motion, sample_time_s);
+        let foresees = lag_s > 0.0 && design.position.law.regulator().is_none();
+        let passing = match model {
+            Some(model) if foresees => self.observed.passing(model, lag_s),
+            _ => SVector::zeros(),
+        };
+        (increment - passing, passing)
     }
 
     /// A step of the law for a sample in turned axes, and its answer to what of the motion passes; its input is in those of the world.
@@ -198,6 +204,15 @@ impl PositionController {
         self.controller.turn(measured, Vector2::clone_owned);
         self.controller.apply(&applied);
         self.observed.believe(&(self.controller.measured() - before));
+    }
+}
+
+/// The largest commanded acceleration later on, m/s². A reference that limits bend does not wait for later.
+fn lasting_m_s2(reference: &ReferenceMotion<2>, lasting: &LargestLean, asked: &Asked) -> f64 {
+    if reference.is_bent || reference.is_at_rest() {
+        lasting.beside(asked.thrust_m_s2)
+    } else {
+        lasting.later_beside(asked.thrust_m_s2)
     }
 }
 
