@@ -9,12 +9,16 @@
 //! | 4 | CRC-32 of the payload |
 //! | … | payload: [`Snapshot`] in postcard |
 
+use crc::{CRC_32_ISO_HDLC, Crc};
+
 use crate::error::{CallError, SavedStateError};
 use crate::identity::identity;
 use crate::model::Model;
 use crate::snapshot::Snapshot;
 
 const HEADER: usize = 8 + 4 + 16 + 8 + 4;
+/// With a table of 1 kB: the library is small.
+static CHECKSUM: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// The bytes of a state.
 pub(crate) fn serialize<M: Model>(snapshot: &Snapshot<M>) -> Result<Vec<u8>, CallError> {
@@ -24,7 +28,7 @@ pub(crate) fn serialize<M: Model>(snapshot: &Snapshot<M>) -> Result<Vec<u8>, Cal
     bytes.extend_from_slice(&M::IDENTITY.saved_state.version.to_le_bytes());
     bytes.extend_from_slice(&identity::<M>().to_le_bytes());
     bytes.extend_from_slice(&(payload.len() as u64).to_le_bytes());
-    bytes.extend_from_slice(&crc32fast::hash(&payload).to_le_bytes());
+    bytes.extend_from_slice(&CHECKSUM.checksum(&payload).to_le_bytes());
     bytes.extend_from_slice(&payload);
     Ok(bytes)
 }
@@ -56,7 +60,7 @@ fn decode<M: Model>(bytes: &[u8]) -> Result<Snapshot<M>, SavedStateError> {
         let expected = usize::try_from(length).unwrap_or(usize::MAX).saturating_add(HEADER);
         return Err(SavedStateError::Length { actual: bytes.len(), expected });
     }
-    if u32::from_le_bytes(take(&mut fields)) != crc32fast::hash(payload) {
+    if u32::from_le_bytes(take(&mut fields)) != CHECKSUM.checksum(payload) {
         return Err(SavedStateError::Checksum);
     }
     match postcard::take_from_bytes(payload) {

@@ -49,7 +49,8 @@ struct MotionFilter<const AXES: usize> {
 }
 
 impl<const AXES: usize> MotionFilters<AXES> {
-    /// A motion of which one sample is known.
+    /// A motion of which one sample is known. It is large, and rarely begins.
+    #[inline(never)]
     pub fn new(value: &SVector<f64, AXES>, time_us: u64) -> Self {
         Self { filters: [MotionFilter::new(value); BANDWIDTHS_RAD_S.len()], time_us }
     }
