@@ -15,6 +15,7 @@ use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
 use clap::Parser;
 use nalgebra::Vector3;
+use paper::NOISE;
 use paper::bars::{Demand, Flyer, Moment, Path, Plan, Points, Row, Shape, Track, fly, largest, rms};
 use quadrotor::{AirframePreset, Configuration, Sensors};
 use rayon::prelude::*;
@@ -195,12 +196,14 @@ fn noisy_goal(draw: &mut Draw, plan: &mut Plan) {
 /// Noise of a good to a bad receiver and inertial unit, with all states measured or outputs alone.
 fn noisy(draw: &mut Draw, plan: &mut Plan) {
     let size = draw.scaled(0.1, 1.5);
+    let [position_noise_m, velocity_noise_m_s, attitude_noise_rad, body_rate_noise_rad_s] =
+        NOISE.map(|deviation| deviation * size);
     plan.configuration.sensors = Sensors {
         output_feedback: draw.one_of(&[false, true]),
-        position_noise_m: 0.02 * size,
-        velocity_noise_m_s: 0.05 * size,
-        attitude_noise_rad: 0.005 * size,
-        body_rate_noise_rad_s: 0.02 * size,
+        position_noise_m,
+        velocity_noise_m_s,
+        attitude_noise_rad,
+        body_rate_noise_rad_s,
         seed: draw.0.next_u32() % 1000,
     };
 }

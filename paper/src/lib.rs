@@ -34,5 +34,5 @@ pub use model_file::ModelFile;
 pub use progress::Progress;
 pub use report::{Page, report};
 pub use results::{Results, parts, results, schema};
-pub use robustness::{FLIGHTS, RobustnessResult, shaped_flights};
+pub use robustness::{FLIGHTS, NOISE, RobustnessResult, shaped_flights};
 pub use tuning::tune;

@@ -74,6 +74,11 @@ impl Sensors {
             == [0.0; 4]
     }
 
+    /// Whether position and velocity are estimated, because they are not both measured exactly.
+    pub(crate) fn estimates_motion(&self) -> bool {
+        self.output_feedback || self.filters_motion()
+    }
+
     /// Whether position and velocity are measured, but not both exactly: then they are filtered.
     pub(crate) fn filters_motion(&self) -> bool {
         !self.output_feedback && (self.position_noise_m > 0.0 || self.velocity_noise_m_s > 0.0)

@@ -60,7 +60,7 @@ impl AltitudeController {
             jump: Vector3::zeros(),
         };
         let sample_time_s = configuration.controllers.altitude.sample_time_s();
-        let increment = self.observed.step(design.altitude.motion.as_ref(), &motion, sample_time_s);
+        let increment = self.observed.step(design.altitude.motion.as_ref(), &motion, (sample_time_s, 0.0));
         let sample = Sample {
             measured,
             increment,

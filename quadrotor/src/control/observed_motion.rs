@@ -113,19 +113,26 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
     }
 
     /// The increment Δx(k) that a law goes by: of the motion that leads to the deviation, or as it was measured when there is no model.
+    /// A disturbance lasts when it has done so for as long as a lag, s; without one, at once.
     pub(crate) fn step(
         &mut self,
         model: Option<&MotionModel<N, P>>,
         seen: &MotionSample<N, P>,
-        sample_time_s: f64,
+        (sample_time_s, lag_s): (f64, f64),
     ) -> SVector<f64, N> {
-        match model {
+        let increment = match model {
             Some(model) => self.increment(model, seen),
             None => {
                 self.watch(seen, sample_time_s);
                 seen.change
             }
+        };
+        if lag_s > 0.0 {
+            self.lasting += (self.disturbance - self.lasting) * -libm::expm1(-sample_time_s / lag_s);
+        } else {
+            self.lasting = self.disturbance;
         }
+        increment
     }
 
     /// A sample of a law that goes by measured increments, which another one may take over from: notes the deviation, and finds the
@@ -153,10 +160,9 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
         }
     }
 
-    /// What of the last increment comes from a disturbance that has not lasted for as long as a lag, s: A⁻¹ E (d − d̄), d̄ following d with
-    /// that lag. Under noise, nobody knows it for a force sooner.
-    pub(crate) fn passing(&mut self, model: &MotionModel<N, P>, lag_s: f64) -> SVector<f64, N> {
-        self.lasting += (self.disturbance - self.lasting) * -libm::expm1(-model.sample_time_s / lag_s);
+    /// What of the last increment comes from a disturbance that has not lasted: A⁻¹ E (d − d̄), d̄ following d with the lag. Under noise,
+    /// nobody knows it for a force sooner.
+    pub(crate) fn passing(&self, model: &MotionModel<N, P>) -> SVector<f64, N> {
         model.inverse * model.by_disturbance * (self.disturbance - self.lasting)
     }
 

@@ -147,13 +147,13 @@ impl PositionController {
         &mut self,
         design: &CascadeDesign,
         motion: &MotionSample<POSITION_STATES, 2>,
-        (sample_time_s, lag_s): (f64, f64),
+        times @ (_, lag_s): (f64, f64),
     ) -> (SVector<f64, POSITION_STATES>, SVector<f64, POSITION_STATES>) {
         let model = design.position.motion.as_ref();
-        let increment = self.observed.step(model, motion, sample_time_s);
+        let increment = self.observed.step(model, motion, times);
         let foresees = lag_s > 0.0 && design.position.law.regulator().is_none();
         let passing = match model {
-            Some(model) if foresees => self.observed.passing(model, lag_s),
+            Some(model) if foresees => self.observed.passing(model),
             _ => SVector::zeros(),
         };
         (increment - passing, passing)

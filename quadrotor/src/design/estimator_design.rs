@@ -1,7 +1,7 @@
 //! The gains of the stationary Kalman predictor (26).
 
 use lmpc::{DesignError, KalmanDesign, KalmanPredictor, NoiseCovariance, StateSpace};
-use nalgebra::{DMatrix, DVector, SVector, Vector1, Vector2};
+use nalgebra::{DMatrix, DVector, Matrix3, SVector, Vector1, Vector2, Vector3};
 
 use crate::{Configuration, Sensors};
 
@@ -33,24 +33,30 @@ pub(crate) enum TranslationAxis {
 }
 
 impl TranslationAxis {
-    /// With its lag behind a disturbance, s.
-    fn new(sensors: &Sensors, sample_time_s: f64) -> Result<(Self, f64), DesignError> {
+    fn new(sensors: &Sensors, sample_time_s: f64) -> Result<Self, DesignError> {
         let position_m = sensors.position_noise_m.max(SMALLEST_NOISE.0);
         if sensors.filters_motion() {
             let velocity_m_s = sensors.velocity_noise_m_s.max(SMALLEST_VELOCITY_NOISE_M_S);
             let deviations = [position_m, velocity_m_s];
             let drift = position_m / LONGEST_MEMORY_S;
             axis(sample_time_s, deviations, MODEL_NOISE_BESIDE_VELOCITY, WANDERING.0, drift)
-                .map(|(axis, lag_s)| (Self::ByMotion(axis), lag_s))
+                .map(Self::ByMotion)
         } else {
-            axis(sample_time_s, [position_m], MODEL_NOISE.0, WANDERING.0, 0.0)
-                .map(|(axis, lag_s)| (Self::ByPosition(axis), lag_s))
+            axis(sample_time_s, [position_m], MODEL_NOISE.0, WANDERING.0, 0.0).map(Self::ByPosition)
         }
     }
 
-    /// Whether it filters a measured velocity.
-    pub(crate) fn filters(&self) -> bool {
-        matches!(self, Self::ByMotion(_))
+    /// How far it lags behind an acceleration that the model does not explain, s. An error fades with e⁺ = (A − K C) e: after a step of d its
+    /// third element is T Σ (A − K C)ᵏ long, which is T (I − A + K C)⁻¹.
+    fn disturbance_lag_s(&self, sample_time_s: f64) -> Result<f64, DesignError> {
+        // Without input and measurement, an estimate fades as an error does.
+        let faded = Matrix3::from_columns(
+            &[Vector3::x(), Vector3::y(), Vector3::z()]
+                .map(|error| self.predict(&error.into(), 0.0, [0.0; 2])),
+        );
+        let lasting = (Matrix3::identity() - faded).try_inverse();
+        let lasting = lasting.ok_or(DesignError::NotFinite { name: "(I − A + K C)⁻¹" })?;
+        Ok(sample_time_s * lasting[(2, 2)])
     }
 
     /// Position, m, velocity, m/s, and unexplained acceleration, m/s², at the next sample, from those at this one, the acceleration
@@ -89,29 +95,32 @@ impl EstimatorDesign {
     pub(crate) fn new(configuration: &Configuration) -> Result<Self, DesignError> {
         let sensors = &configuration.sensors;
         let sample_time_s = configuration.controllers.attitude.sample_time_s();
-        let (translation, lag_s) = TranslationAxis::new(sensors, sample_time_s)?;
-        let (rotation, _) = axis(
+        let translation = TranslationAxis::new(sensors, sample_time_s)?;
+        let estimates = sensors.estimates_motion();
+        Ok(Self {
+            translation,
+            rotation: axis(
+                sample_time_s,
+                [sensors.attitude_noise_rad.max(SMALLEST_NOISE.1)],
+                MODEL_NOISE.1,
+                WANDERING.1,
+                0.0,
+            )?,
+            disturbance_lag_s: if estimates { translation.disturbance_lag_s(sample_time_s)? } else { 0.0 },
             sample_time_s,
-            [sensors.attitude_noise_rad.max(SMALLEST_NOISE.1)],
-            MODEL_NOISE.1,
-            WANDERING.1,
-            0.0,
-        )?;
-        let is_estimated = sensors.output_feedback || translation.filters();
-        let disturbance_lag_s = if is_estimated { lag_s } else { 0.0 };
-        Ok(Self { translation, rotation, disturbance_lag_s, sample_time_s })
+        })
     }
 }
 
 /// The predictor of \[p; v; d\]: p⁺ = p + T v + T²/2 (u + d), v⁺ = v + T (u + d), d⁺ = d, measuring the first Q of them under noise
-/// of these standard deviations. By `drift` T in a sample p moves beside v. And by how long it lags behind a steady d.
+/// of these standard deviations. By `drift` T in a sample p moves beside v.
 fn axis<const Q: usize>(
     t: f64,
     noise: [f64; Q],
     model_noise: f64,
     wandering: f64,
     drift: f64,
-) -> Result<(KalmanPredictor<3, 1, Q>, f64), DesignError> {
+) -> Result<KalmanPredictor<3, 1, Q>, DesignError> {
     let half = t * t / 2.0;
     let a = DMatrix::from_row_slice(3, 3, &[1.0, t, half, 0.0, 1.0, t, 0.0, 0.0, 1.0]);
     let b = DMatrix::from_column_slice(3, 1, &[half, t, 0.0]);
@@ -123,11 +132,7 @@ fn axis<const Q: usize>(
     w[(0, 0)] += drift * t * drift * t;
     let v = DMatrix::from_diagonal(&DVector::from_iterator(Q, noise.map(|deviation| deviation * deviation)));
     let covariance = NoiseCovariance::uncorrelated(w, v);
-    let design = KalmanDesign::new(&plant, &covariance)?;
-    // An error fades with e⁺ = (A − K C) e: after a step of d its third element is T Σ (A − K C)ᵏ long, which is T (I − A + K C)⁻¹.
-    let fading = DMatrix::identity(3, 3) - plant.a() + design.gain() * plant.c();
-    let lasting = fading.try_inverse().ok_or(DesignError::NotFinite { name: "(I − A + K C)⁻¹" })?;
-    Ok((KalmanPredictor::new(&plant, &design)?, t * lasting[(2, 2)]))
+    KalmanPredictor::new(&plant, &KalmanDesign::new(&plant, &covariance)?)
 }
 
 #[cfg(test)]

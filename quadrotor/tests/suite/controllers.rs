@@ -4,7 +4,7 @@ use lmpc::Status;
 use nalgebra::Vector3;
 use quadrotor::{Activity, Configuration, ControllerActivity, ControllerKind, Sensors};
 
-use crate::common::{Extremes, GOAL_M, distance, fly, goal, overshoot, smooth_flight, unshaped};
+use crate::common::{Extremes, GOAL_M, distance, fly, goal, noisy, overshoot, smooth_flight, unshaped};
 
 const KINDS: [ControllerKind; 3] =
     [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr];
@@ -136,13 +136,7 @@ fn every_kind_hovers_on_noisy_outputs_alone() {
 /// Without a filter the noise of each reading goes through the gains: 2.3 cm with Laguerre MPC, 1.8 cm with the others.
 #[test]
 fn noisy_positions_and_velocities_are_filtered() {
-    let sensors = Sensors {
-        position_noise_m: 0.02,
-        velocity_noise_m_s: 0.05,
-        attitude_noise_rad: 0.005,
-        body_rate_noise_rad_s: 0.02,
-        ..Sensors::default()
-    };
+    let sensors = noisy();
     for kind in KINDS {
         let rms = hover_rms_m(&Configuration { sensors, ..of_kind(kind, Configuration::default()) });
         assert!(rms < 0.0175, "{kind:?}: {rms} m");

@@ -1,11 +1,12 @@
 //! Mass and drag learned in flight: what the controllers make of a wrong mass, a load, a force and drag.
 
-use crate::common::{Extremes, distance, fly, goal, overshoot};
+use crate::common::trajectory::Trajectory;
+use crate::common::{Extremes, distance, fly, goal, noisy, overshoot};
 use nalgebra::{UnitQuaternion, Vector3};
 use quadrotor::{
     Airframe, AirframePreset, AttitudeTarget, Configuration, ControlInputs, ControlLoop, ControllerKind,
-    Disturbance, FlatAttitude, Inputs, Measurement, Plant, PlantInputs, PlantState, PositionReference,
-    Sensors, Simulation, Target,
+    Disturbance, Inputs, Measurement, Plant, PlantInputs, PlantState, PositionReference, Sensors, Simulation,
+    Target,
 };
 
 const KINDS: [ControllerKind; 3] =
@@ -165,36 +166,14 @@ fn a_load_hardly_moves_a_hovering_vehicle() {
 /// them, and kept as long as the thrust did not change.
 #[test]
 fn a_noisy_start_at_speed_teaches_no_wrong_mass() {
-    let circle = |time_us: u64| {
-        let (radius_m, rate) = (4.0, 1.2_f64);
-        let (sin, cos) = (rate * time_us as f64 * 1e-6).sin_cos();
-        let along = |order: i32, x: f64, y: f64| Vector3::new(x, y, 0.0) * (radius_m * rate.powi(order));
-        PositionReference {
-            velocity_m_s: along(1, -sin, cos),
-            acceleration_m_s2: along(2, -cos, -sin),
-            jerk_m_s3: along(3, sin, -cos),
-            snap_m_s4: along(4, cos, sin),
-            ..PositionReference::goal([radius_m * cos, radius_m * sin, -20.0], 0.0)
-        }
-    };
-    let (start, flat) = (circle(0), FlatAttitude::of(&circle(0)));
-    let [roll_rad, pitch_rad] = flat.tilt_rad();
+    let circle = Trajectory::circle(1.2);
     for seed in 0..8 {
         let mut configuration = unshaped(ControllerKind::Lmpc, false);
-        configuration.initial.position_m = start.position_m.into();
-        configuration.initial.velocity_m_s = start.velocity_m_s.into();
-        configuration.initial.attitude_rad = [roll_rad, pitch_rad, 0.0];
-        configuration.initial.body_rate_rad_s = flat.body_rate_rad_s.into();
+        circle.begin(&mut configuration);
         configuration.limits.tilt_rad = 1.2;
-        configuration.sensors = Sensors {
-            position_noise_m: 0.02,
-            velocity_noise_m_s: 0.05,
-            attitude_noise_rad: 0.005,
-            body_rate_noise_rad_s: 0.02,
-            seed,
-            ..Sensors::default()
-        };
-        let inputs = |time_us: u64| Inputs { reference: circle(time_us), ..Inputs::default() };
+        configuration.sensors = Sensors { seed, ..noisy() };
+        let inputs =
+            |time_us: u64| Inputs { reference: circle.reference(time_us, true), ..Inputs::default() };
         let flight = fly(&configuration, &inputs, 10.0, |_| {});
         let factor = flight.control().believed_mass_kg() / configuration.airframe.mass_kg;
         assert!((factor - 1.0).abs() < 0.03, "seed {seed}: {factor}");

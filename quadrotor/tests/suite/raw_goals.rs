@@ -1,6 +1,6 @@
 //! Raw goals under slow tilts and slow samples. Others, cruise and side forces are among the bars of the crate `paper`.
 
-use crate::common::{Extremes, distance, fly, goal, overshoot};
+use crate::common::{Extremes, distance, fly, goal, noisy, overshoot};
 use quadrotor::{AirframePreset, Configuration, ControllerKind, Limits, Sensors};
 
 /// A tilt that turns or begins to turn slowly: later, but without swinging. Goals of 10 m were missed for ever, by 170 m with a Crazyflie.
@@ -35,17 +35,10 @@ fn goals_are_reached_by_slow_tilts() {
 /// and was a quarter of a metre per second slower than the limit.
 #[test]
 fn a_cruise_at_the_speed_limit_is_calm_under_noise() {
-    let noisy = Sensors {
-        position_noise_m: 0.02,
-        velocity_noise_m_s: 0.05,
-        attitude_noise_rad: 0.005,
-        body_rate_noise_rad_s: 0.02,
-        ..Sensors::default()
-    };
     for (output_feedback, most_deg) in [(false, 2.5), (true, 4.5)] {
         let mut configuration = Configuration::default();
         configuration.reference.shaping = false;
-        configuration.sensors = Sensors { output_feedback, ..noisy };
+        configuration.sensors = Sensors { output_feedback, ..noisy() };
         let limit_m_s = configuration.limits.speed_horizontal_m_s;
         let [mut count, mut pitch, mut speed] = [0.0; 3];
         let mut fastest_m_s = 0.0_f64;

@@ -1,62 +1,14 @@
 //! References with their derivatives: figure-eights and circles with open limits, and looks ahead.
 
-use std::f64::consts::FRAC_PI_2;
-
 #[cfg(feature = "shaper")]
 use crate::common::goal;
-use crate::common::{STEP_US, fly, tilt_rad, unshaped};
+use crate::common::trajectory::Trajectory;
+use crate::common::{STEP_US, fly, noisy, tilt_rad, unshaped};
 use nalgebra::Vector3;
 use quadrotor::{
     Airframe, AirframePreset, Configuration, ControllerKind, FlatAttitude, Inputs, Limits, Mixer, Plant,
-    PlantInputs, PlantState, PositionReference, Sensors, Simulation, Wrench,
+    PlantInputs, PlantState, PositionReference, Simulation, Wrench,
 };
-
-/// x = A sin(ω t + c) on each horizontal axis.
-#[derive(Clone, Copy)]
-struct Trajectory {
-    amplitude_m: [f64; 3],
-    rate_rad_s: [f64; 3],
-    phase_rad: [f64; 3],
-}
-
-impl Trajectory {
-    fn figure_eight(rate_rad_s: f64) -> Self {
-        let rates = [rate_rad_s, 2.0 * rate_rad_s, 0.0];
-        Self { amplitude_m: [6.0, 3.0, 0.0], rate_rad_s: rates, phase_rad: [0.0; 3] }
-    }
-
-    fn circle(rate_rad_s: f64) -> Self {
-        let rates = [rate_rad_s, rate_rad_s, 0.0];
-        Self { amplitude_m: [4.0, 4.0, 0.0], rate_rad_s: rates, phase_rad: [FRAC_PI_2, 0.0, 0.0] }
-    }
-
-    /// An upright figure-eight.
-    fn upright(size_m: f64, rate_rad_s: f64) -> Self {
-        let rates = [rate_rad_s, 0.0, 2.0 * rate_rad_s];
-        Self { amplitude_m: [size_m, 0.0, size_m / 4.0], rate_rad_s: rates, phase_rad: [0.0; 3] }
-    }
-
-    fn derivative(&self, order: i32, time_s: f64) -> Vector3<f64> {
-        Vector3::from_fn(|axis, _| {
-            let (a, w) = (self.amplitude_m[axis], self.rate_rad_s[axis]);
-            let angle = w * time_s + self.phase_rad[axis] + f64::from(order) * FRAC_PI_2;
-            a * w.powi(order) * angle.sin()
-        })
-    }
-
-    /// With all derivatives, or with the acceleration as the last.
-    fn reference(&self, time_us: u64, whole: bool) -> PositionReference {
-        let t = time_us as f64 * 1e-6;
-        let given = |order: i32| if whole { self.derivative(order, t) } else { Vector3::zeros() };
-        PositionReference {
-            velocity_m_s: self.derivative(1, t),
-            acceleration_m_s2: self.derivative(2, t),
-            jerk_m_s3: given(3),
-            snap_m_s4: given(4),
-            ..PositionReference::goal((self.derivative(0, t) - Vector3::z() * 20.0).into(), 0.0)
-        }
-    }
-}
 
 /// Limits that do not count, and a start on the trajectory.
 fn open(trajectory: &Trajectory) -> Configuration {
@@ -76,24 +28,23 @@ fn open(trajectory: &Trajectory) -> Configuration {
         jerk_vertical_m_s3: 40.0,
         ..Limits::default()
     };
-    let start = trajectory.reference(0, true);
-    let flat = FlatAttitude::of(&start);
-    configuration.initial.position_m = start.position_m.into();
-    configuration.initial.velocity_m_s = start.velocity_m_s.into();
-    let [roll_rad, pitch_rad] = flat.tilt_rad();
-    configuration.initial.attitude_rad = [roll_rad, pitch_rad, 0.0];
-    configuration.initial.body_rate_rad_s = flat.body_rate_rad_s.into();
+    trajectory.begin(&mut configuration);
     configuration
 }
 
 /// Root mean square of the distance to the trajectory after its first 5 s, m, of a reference that is set each `period_us`.
 fn tracked(trajectory: Trajectory, whole: bool, period_us: u64) -> f64 {
+    tracked_by(&open(&trajectory), trajectory, whole, period_us)
+}
+
+/// The same by a vehicle of a configuration.
+fn tracked_by(configuration: &Configuration, trajectory: Trajectory, whole: bool, period_us: u64) -> f64 {
     let inputs = move |time_us: u64| Inputs {
         reference: trajectory.reference(time_us / period_us * period_us, whole),
         ..Inputs::default()
     };
     let (mut square, mut count) = (0.0, 0.0);
-    fly(&open(&trajectory), &inputs, 30.0, |outputs| {
+    fly(configuration, &inputs, 30.0, |outputs| {
         if outputs.time_us > 5_000_000 {
             let wanted = trajectory.reference(outputs.time_us, false).position_m;
             square += (outputs.position_m - wanted).norm_squared();
@@ -132,24 +83,8 @@ fn noise_takes_nothing_away_from_a_reference_near_the_largest_lean() {
     for (tilt_rad, most_m) in [(1.2, 0.03), (Limits::default().tilt_rad, 0.03)] {
         let mut configuration = open(&circle);
         configuration.limits = Limits { tilt_rad, speed_horizontal_m_s: 20.0, ..Limits::default() };
-        configuration.sensors = Sensors {
-            position_noise_m: 0.02,
-            velocity_noise_m_s: 0.05,
-            attitude_noise_rad: 0.005,
-            body_rate_noise_rad_s: 0.02,
-            ..Sensors::default()
-        };
-        let inputs =
-            |time_us: u64| Inputs { reference: circle.reference(time_us, true), ..Inputs::default() };
-        let (mut square, mut count) = (0.0, 0.0);
-        fly(&configuration, &inputs, 30.0, |outputs| {
-            if outputs.time_us > 5_000_000 {
-                square +=
-                    (outputs.position_m - circle.reference(outputs.time_us, false).position_m).norm_squared();
-                count += 1.0;
-            }
-        });
-        let rms_m = f64::sqrt(square / count);
+        configuration.sensors = noisy();
+        let rms_m = tracked_by(&configuration, circle, true, 1);
         assert!(rms_m < most_m, "tilt limit {tilt_rad} rad: {rms_m} m");
     }
 }

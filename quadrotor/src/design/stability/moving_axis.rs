@@ -70,7 +70,7 @@ impl<const K: usize> MovingAxis<K> {
         Self {
             law,
             motion,
-            estimated: configuration.sensors.output_feedback || design.estimator.translation.filters(),
+            estimated: configuration.sensors.estimates_motion(),
             estimator: design.estimator.translation,
         }
     }
