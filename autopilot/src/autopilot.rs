@@ -66,6 +66,7 @@ impl Autopilot {
             links: links.to_vec(),
             log_queue: LogQueue::default(),
             reboot_us: None,
+            quiet_until_us: 0,
             rests: false,
         };
         context.parameters.statistics_mut().reset(unix_start_us / 1_000_000);
@@ -76,6 +77,8 @@ impl Autopilot {
     /// Takes a received frame in. What is for somebody else, or means nothing here, changes nothing; a command for a component that is
     /// not there is refused.
     pub fn receive(&mut self, origin: &Origin, frame: &Frame) {
+        // Whatever it asks for may be due at once.
+        self.context.quiet_until_us = 0;
         self.services.hear(&mut self.context, origin);
         let Some(asked) = target_of(frame).speaker(self.system_id()) else {
             self.services.decline(&mut self.context, origin, frame);
@@ -90,16 +93,34 @@ impl Autopilot {
     /// # Errors
     /// [`FlightError`]: the flight cannot go on.
     pub fn tick(&mut self) -> Result<(), FlightError> {
+        self.fly(1).map(drop)
+    }
+
+    /// Flies on, sends what is due then, and returns by how many ticks: one, or up to `most` until a regular message is due, if the vehicle
+    /// [hovers](Vehicle::fly) and nothing happens to it.
+    ///
+    /// # Errors
+    /// [`FlightError`]: the flight cannot go on.
+    pub fn fly(&mut self, most: u64) -> Result<u64, FlightError> {
         let time_us = self.context.vehicle.time_us();
         if self.context.reboot_us.is_some_and(|due_us| time_us >= due_us) {
             self.reboot()?;
         }
-        self.context.vehicle.tick()?;
-        self.count();
+        let ticks = self.context.vehicle.fly(most.min(self.ticks_to_be_alone()))?;
+        self.count(ticks * TICK_US);
         self.services.tick(&mut self.context);
         self.services.announce(&mut self.context);
         self.services.stream(&mut self.context);
-        Ok(())
+        Ok(ticks)
+    }
+
+    /// Ticks after which something is to be done beside the flight.
+    fn ticks_to_be_alone(&self) -> u64 {
+        let Context { vehicle, reboot_us, quiet_until_us, .. } = &self.context;
+        match reboot_us {
+            Some(_) => 1,
+            None => quiet_until_us.saturating_sub(vehicle.time_us()).div_ceil(TICK_US),
+        }
     }
 
     #[cfg(test)]
@@ -123,7 +144,7 @@ impl Autopilot {
         if let Some(pulses) = radio {
             context.vehicle.receive_radio(pulses);
         }
-        context.reboot_us = None;
+        (context.reboot_us, context.quiet_until_us) = (None, 0);
         context.outbox.restart();
         context.log_queue.close();
         context.parameters.statistics_mut().boots += 1;
@@ -134,14 +155,14 @@ impl Autopilot {
         Ok(())
     }
 
-    fn count(&mut self) {
+    fn count(&mut self, flown_us: u64) {
         let flies = self.context.vehicle.landed_state() != LandedState::OnGround;
         let vehicle = &self.context.vehicle;
         let takes_off = vehicle.flight_times().took_off_us == Some(vehicle.time_us());
         let statistics = self.context.parameters.statistics_mut();
         statistics.flights += u32::from(takes_off);
-        statistics.run_us += TICK_US;
-        statistics.flight_us += if flies { TICK_US } else { 0 };
+        statistics.run_us += flown_us;
+        statistics.flight_us += if flies { flown_us } else { 0 };
     }
 
     /// Simulation time since the program has started, µs: that of the vehicle begins anew with each boot.

@@ -35,6 +35,8 @@ pub struct Context {
     pub log_queue: LogQueue,
     /// When the vehicle boots again, µs after its start, if it was asked to.
     pub reboot_us: Option<u64>,
+    /// No regular message is due before this time, µs after the start, unless somebody asks for one.
+    pub quiet_until_us: u64,
     /// Set by a method of a service that does nothing, and need not be called again.
     pub rests: bool,
 }

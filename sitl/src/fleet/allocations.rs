@@ -25,7 +25,7 @@ fn command(fleet: &mut Fleet, command: MavCmd, param1: f32, param7: f32) {
 
 fn fly(fleet: &mut Fleet, ticks: u64, now: Instant) {
     for tick in 0..ticks {
-        fleet.tick(0, now);
+        fleet.fly_member(0, 1, now);
         if tick % LOOK == 0 {
             fleet.flush();
         }

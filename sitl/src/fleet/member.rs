@@ -155,14 +155,15 @@ impl Member {
         self.digest
     }
 
-    /// One tick on.
+    /// One tick on, or up to `most` at once while it hovers and nothing happens to it. Returns how many.
     ///
     /// # Errors
     /// [`FlightError`]: the flight cannot go on; its time is still that of the last good tick.
-    pub(super) fn tick(&mut self, now: Instant) -> Result<(), FlightError> {
+    pub(super) fn fly(&mut self, most: u64, now: Instant) -> Result<u64, FlightError> {
         set_simulation_time(self.time_us());
         let boots = self.autopilot.boots();
-        self.autopilot.tick()?;
+        // Logs may want to see each tick.
+        let flown = self.autopilot.fly(if self.log.is_some() { 1 } else { most })?;
         if self.autopilot.boots() != boots {
             // The vehicle that has booted knows of nobody.
             self.ground_station = None;
@@ -172,7 +173,7 @@ impl Member {
         if let Some(log) = &mut self.log {
             log.tick(&mut self.autopilot, now);
         }
-        Ok(())
+        Ok(flown)
     }
 
     /// Why its simulation has ended before the run, if it has.

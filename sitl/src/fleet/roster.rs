@@ -174,28 +174,33 @@ impl Fleet {
         let (rounds, at_once) = if self.shares_traffic { (ticks, 1) } else { (1, ticks) };
         for _ in 0..rounds {
             for number in members.clone() {
-                for _ in 0..at_once {
-                    self.tick(number, now);
+                let mut flown = 0;
+                while flown < at_once {
+                    flown += self.fly_member(number, at_once - flown, now);
                 }
             }
         }
     }
 
-    /// A tick of one vehicle, unless its simulation has ended.
-    pub(super) fn tick(&mut self, number: usize, now: Instant) {
+    /// A tick of one vehicle, or up to `most` at once where nothing happens in between. Returns how many: all if its simulation has ended.
+    pub(super) fn fly_member(&mut self, number: usize, most: u64, now: Instant) -> u64 {
         let flying = |member: &&mut Member| member.loss().is_none();
-        let Some(member) = self.members.get_mut(number).filter(flying) else { return };
+        let Some(member) = self.members.get_mut(number).filter(flying) else { return most };
         let begun_us = member.time_us();
-        match member.tick(now) {
-            Ok(()) => {
+        match member.fly(most, now) {
+            Ok(flown) => {
                 if let Some(motion) = member.autopilot.vehicle().foreign_motion() {
                     self.books.motion(number, begun_us, motion);
                     self.books.keep_size(&self.members);
                 }
                 self.send(number, now);
                 self.share_traffic(number, now);
+                flown
             }
-            Err(error) => self.lose(number, error, now),
+            Err(error) => {
+                self.lose(number, error, now);
+                most
+            }
         }
     }
 

@@ -165,6 +165,19 @@ impl ClosedLoop {
         }
     }
 
+    /// Flies on to a time, µs, as it was asked to last.
+    ///
+    /// # Errors
+    /// [`FlightError`]: the flight has left the range of numbers.
+    pub fn go_on(&mut self, time_us: u64) -> Result<(), FlightError> {
+        Ok(self.simulation.advance_to(time_us, &self.inputs)?)
+    }
+
+    /// Whether our plant flies in air that goes on as it is, within limits that are wanted.
+    pub fn is_undisturbed(&self) -> bool {
+        self.foreign.is_none() && !self.limits.is_eased() && self.wind.is_steady()
+    }
+
     /// Changes the configuration, on the ground and in flight: see [`Simulation::reconfigure`].
     ///
     /// # Errors

@@ -27,6 +27,11 @@ impl Injection {
         &self.faults
     }
 
+    /// Whether nothing is broken, and nothing is to break.
+    pub fn is_over(&self) -> bool {
+        self.scheduled.is_empty() && self.faults == Faults::default()
+    }
+
     /// Whether the schedule has something for a time, µs.
     pub fn is_due(&self, time_us: u64) -> bool {
         self.scheduled.front().is_some_and(|next| next.time_us <= time_us)

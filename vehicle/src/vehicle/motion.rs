@@ -9,6 +9,7 @@ use nalgebra::{Vector2, Vector3};
 use quadrotor::{Limits, PositionReference};
 
 use super::set_point::{AxisTarget, PositionSetPoint, YawTarget};
+use super::tick::TICK_S;
 
 /// Speed per velocity error at which the acceleration closes a small one, 1/s.
 const VELOCITY_RATE: f64 = 6.0;
@@ -120,6 +121,18 @@ impl Motion {
             }
         }
         self.turn(limits, dt_s);
+    }
+
+    /// Whether it stays where it is until it is asked for something else.
+    pub fn rests(&self, limits: &Limits) -> bool {
+        let runs = |target: &AxisTarget| matches!(target, AxisTarget::Track { .. });
+        let turns = matches!(self.set_point.yaw, YawTarget::Track(..));
+        if turns || self.set_point.axes.iter().any(runs) {
+            return false;
+        }
+        let mut later = *self;
+        later.step(limits, TICK_S);
+        later == *self
     }
 
     /// Whether it can go on within lower limits and neither run past a place nor past a velocity that it is asked for. What is

@@ -6,6 +6,7 @@ mod decision;
 mod equipment;
 mod home_requests;
 mod lead;
+mod long_tick;
 mod look_back;
 mod outputs;
 mod parachute;
@@ -21,6 +22,7 @@ mod takeoff_requests;
 use nalgebra::{Vector2, Vector3};
 use quadrotor::ConfigurationError;
 
+use self::long_tick::BegunTick;
 use super::battery::{capacity_ah, full_voltage_v};
 use super::closed_loop::{ClosedLoop, Conditions};
 use super::decided::Decided;
@@ -48,6 +50,10 @@ pub struct Vehicle {
     plans: KnownPlans,
     decided: Decided,
     machines: Machines,
+    /// The long tick that is being flown.
+    tick: Option<BegunTick>,
+    /// How long the latest tick has lasted, s.
+    lasted_s: f64,
 }
 
 impl Vehicle {
@@ -90,6 +96,8 @@ impl Vehicle {
             plans: KnownPlans::new(settings.plans.clone(), &site),
             decided: Decided::new(settings.mode_at_boot(), home),
             machines,
+            tick: None,
+            lasted_s: TICK_S,
         };
         vehicle.announce_plans();
         let most_m_s = vehicle.conduct().speeds.most_m_s;
@@ -99,13 +107,13 @@ impl Vehicle {
 
     /// What the machines see of the vehicle now.
     fn situation(&self) -> Situation<'_> {
-        let Self { setup, closed_loop, perception, plans, decided, machines } = self;
+        let Self { setup, closed_loop, perception, plans, decided, machines, .. } = self;
         situation(setup, closed_loop, perception, plans, decided, machines)
     }
 
     /// What the machines see of the vehicle now, and the machines.
     fn situation_and_machines(&mut self) -> (Situation<'_>, &mut Machines) {
-        let Self { setup, closed_loop, perception, plans, decided, machines } = self;
+        let Self { setup, closed_loop, perception, plans, decided, machines, .. } = self;
         (situation(setup, closed_loop, perception, plans, decided, machines), machines)
     }
 
@@ -114,6 +122,42 @@ impl Vehicle {
     /// # Errors
     /// [`FlightError`]: the flight cannot go on.
     pub fn tick(&mut self) -> Result<(), FlightError> {
+        self.fly(1).map(drop)
+    }
+
+    /// Flies on, and returns by how many ticks: one, or up to `most` if the vehicle hovers and nothing happens to it. The flight is the
+    /// same, however it is divided.
+    ///
+    /// # Errors
+    /// [`FlightError`]: the flight cannot go on.
+    pub fn fly(&mut self, most: u64) -> Result<u64, FlightError> {
+        let now_us = self.time_us();
+        let begun = self.tick.take();
+        let (tick, goes_on) = match begun {
+            Some(tick) if self.goes_on(&tick) => (tick, true),
+            Some(tick) => {
+                self.end_tick(&tick);
+                (self.begin_tick(), false)
+            }
+            None => (self.begin_tick(), false),
+        };
+        let time_us = tick.end_us.min(now_us + most.max(1) * TICK_US);
+        if goes_on {
+            self.closed_loop.go_on(time_us)?;
+        } else {
+            self.advance(time_us - now_us)?;
+        }
+        self.perceive();
+        if time_us < tick.end_us {
+            self.tick = Some(tick);
+        } else {
+            self.end_tick(&tick);
+        }
+        Ok((time_us - now_us) / TICK_US)
+    }
+
+    /// Decides how it is flown from now on.
+    fn begin_tick(&mut self) -> BegunTick {
         if self.machines.autostart.is_pending() {
             self.autostart();
         }
@@ -125,17 +169,20 @@ impl Vehicle {
         if self.machines.motor_tests.is_running() {
             self.consult(|parts, situation, proposal| parts.motor_tests.step(situation, proposal));
         }
-        self.advance()?;
-        self.perceive();
+        self.begun_tick()
+    }
+
+    /// Looks at where a tick has led to.
+    fn end_tick(&mut self, tick: &BegunTick) {
+        self.lasted_s = tick.lasted_s(self.time_us());
         self.discharge();
         self.look_back();
         self.step_equipment();
         self.step_parachute();
-        Ok(())
     }
 
-    /// Flies the closed loop as the steering asks.
-    fn advance(&mut self) -> Result<(), FlightError> {
+    /// Flies the closed loop as the steering asks, µs.
+    fn advance(&mut self, duration_us: u64) -> Result<(), FlightError> {
         self.end_pushes();
         let pushes = &self.setup.conduct().simulated.pushes;
         let airframe = &self.closed_loop.simulation().configuration().airframe;
@@ -156,9 +203,9 @@ impl Vehicle {
         match test {
             Some((mut steering, rotor_faults)) => {
                 let conditions = Conditions { armed: true, rotor_faults, ..conditions };
-                self.closed_loop.step(&mut steering, &conditions, TICK_US)
+                self.closed_loop.step(&mut steering, &conditions, duration_us)
             }
-            None => self.closed_loop.step(self.decided.steering_to_fly(), &conditions, TICK_US),
+            None => self.closed_loop.step(self.decided.steering_to_fly(), &conditions, duration_us),
         }
     }
 
@@ -200,7 +247,7 @@ impl Vehicle {
         let pack = airframe.battery.sag.then_some(&outputs.battery);
         let Machines { battery, injection, .. } = &mut self.machines;
         battery.fail(injection.faults().battery(), capacity_ah);
-        battery.step(airframe, &outputs.rotor_speed_rad_s, pack, capacity_ah, TICK_S);
+        battery.step(airframe, &outputs.rotor_speed_rad_s, pack, capacity_ah, self.lasted_s);
     }
 
     /// Whether it stands on the ground, disarmed.

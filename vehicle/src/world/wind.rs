@@ -118,6 +118,13 @@ impl Wind {
         (self.settings, self.shape) = (settings, shape);
     }
 
+    /// Whether it neither changes with time nor with the height.
+    pub fn is_steady(&self) -> bool {
+        let speed_m_s = self.settings.speed_m_s;
+        let is_even = self.shape.profile == WindProfile::Even || speed_m_s == 0.0;
+        is_even && self.settings.gusts_m_s == 0.0 && self.speed_m_s == speed_m_s
+    }
+
     /// Goes on with a change of the speed up to a time, µs.
     fn settle(&mut self, time_us: u64) {
         let dt_s = time_us.saturating_sub(self.time_us) as f64 / 1e6;

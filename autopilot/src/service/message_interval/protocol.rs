@@ -104,6 +104,7 @@ impl Service for MessageIntervals {
                 }
             });
         }
+        context.quiet_until_us = self.links.iter().map(Schedule::quiet_until_us).min().unwrap_or(u64::MAX);
     }
 }
 

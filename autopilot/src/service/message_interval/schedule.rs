@@ -143,6 +143,11 @@ impl Schedule {
         }
     }
 
+    /// No message is due before this time, µs.
+    pub fn quiet_until_us(&self) -> u64 {
+        self.quiet_until_us
+    }
+
     /// Messages that are due. Their times are multiples of the interval, so that a rate holds exactly on average.
     pub fn due(&mut self, time_us: u64, mut send: impl FnMut(&'static Stream)) {
         if time_us < self.quiet_until_us {

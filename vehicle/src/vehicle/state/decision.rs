@@ -41,7 +41,7 @@ impl Vehicle {
         &mut self,
         ask: impl FnOnce(&mut Machines, &Situation, &mut Proposal) -> T,
     ) -> T {
-        let Self { setup, closed_loop, perception, plans, decided, machines } = self;
+        let Self { setup, closed_loop, perception, plans, decided, machines, .. } = self;
         let situation = situation(setup, closed_loop, perception, plans, decided, machines);
         let mut proposal = Proposal::new(&situation);
         let answer = ask(machines, &situation, &mut proposal);
@@ -59,7 +59,7 @@ impl Vehicle {
         let mut next = 0;
         while next < turns.len() {
             // Taken apart here: a situation is large, and made in its place.
-            let Self { setup, closed_loop, perception, plans, decided, machines } = self;
+            let Self { setup, closed_loop, perception, plans, decided, machines, .. } = self;
             let situation = situation(setup, closed_loop, perception, plans, decided, machines);
             let mut proposal = Proposal::new(&situation);
             while let Some(ask) = turns.get_mut(next) {

@@ -13,7 +13,6 @@ use super::super::proposal::Proposal;
 use super::super::situation::Situation;
 use super::super::speed_choice::SpeedChoice;
 use super::super::speeds::SpeedChange;
-use super::super::tick::TICK_S;
 use super::super::traffic_watch::TrafficWatch;
 use super::Vehicle;
 use super::decision::Shown;
@@ -30,9 +29,9 @@ impl Vehicle {
             self.closed_loop.release_limits();
         }
         let (crossed, flies) = (Cell::new(None), Cell::new(false));
-        let mut causes = Cause::ALL.iter();
+        let (mut causes, lasted_s) = (Cause::ALL.iter(), self.lasted_s);
         self.consult_in_turn(&mut [
-            &mut |parts, situation, proposal| look(parts, situation, proposal, &crossed),
+            &mut |parts, situation, proposal| look(parts, situation, proposal, (&crossed, lasted_s)),
             &mut |parts, situation, proposal| {
                 parts.fence_margin.watch(situation, proposal);
                 Shown::Still
@@ -91,14 +90,14 @@ fn look(
     parts: &mut Machines,
     situation: &Situation,
     proposal: &mut Proposal,
-    crossed: &Cell<Option<Breach>>,
+    (crossed, lasted_s): (&Cell<Option<Breach>>, f64),
 ) -> Shown {
     let before = (parts.consent, parts.fence, parts.simple);
     parts.consent.watch(situation);
     let chosen = SpeedChoice::of(situation, parts.mission.takes_off());
     crossed.set(parts.fence.watch(situation));
     parts.simple.watch(situation);
-    parts.failsafe.feel_wind(situation.wind_m_s.norm(), TICK_S);
+    parts.failsafe.feel_wind(situation.wind_m_s.norm(), lasted_s);
     if let Some(text) = parts.failsafe.feel_battery(situation) {
         proposal.say(Severity::Critical, text);
     }

@@ -4,13 +4,13 @@ use super::super::landed::LandedState;
 use super::super::machines::Machines;
 use super::super::proposal::Proposal;
 use super::super::situation::Situation;
-use super::super::tick::TICK_S;
 use super::Vehicle;
 use super::decision::Shown;
 
 impl Vehicle {
     /// Looks at what the tick has led to.
     pub(super) fn look_back(&mut self) {
+        let lasted_s = self.lasted_s;
         self.consult_in_turn(&mut [
             &mut |parts, situation, proposal| {
                 parts.obstacles.measure(situation);
@@ -18,7 +18,7 @@ impl Vehicle {
                 Shown::still_if(parts.obstacles.surface() == situation.surface)
             },
             &mut |parts, situation, proposal| {
-                parts.rotors.watch(situation, proposal, TICK_S);
+                parts.rotors.watch(situation, proposal, lasted_s);
                 Shown::still_if(parts.rotors.lost_rotor() == situation.lost_rotor)
             },
             &mut |parts, situation, proposal| {
@@ -26,7 +26,7 @@ impl Vehicle {
                 Shown::Still
             },
             &mut |parts, situation, proposal| {
-                parts.crash.watch(situation, proposal, TICK_S);
+                parts.crash.watch(situation, proposal, lasted_s);
                 Shown::Still
             },
             &mut |parts, situation, proposal| {

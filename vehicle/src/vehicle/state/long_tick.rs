@@ -1,0 +1,104 @@
+//! Ticks that last longer: nothing happens to a vehicle that hovers by itself or stands disarmed, so it is looked at less often.
+
+use super::super::steering::Steering;
+use super::super::tick::TICK_US;
+use super::super::weathervane::IntoWind;
+use super::Vehicle;
+use crate::mode::Mode;
+
+/// Long ticks end at multiples of this, µs: half of the attitude controller's period, and a step of the plant in calm flight.
+const GRID_US: u64 = 5_000;
+/// Slower than this, m/s and rad/s, a vehicle whose reference rests rests, too.
+const SLOW_M_S: f64 = 0.5;
+const SLOW_RAD_S: f64 = 0.5;
+
+/// A tick that has begun.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BegunTick {
+    begun_us: u64,
+    pub end_us: u64,
+    armed: bool,
+    mode: Mode,
+    steering: Steering,
+}
+
+impl BegunTick {
+    /// How long it has lasted at a time, µs, in s.
+    pub fn lasted_s(&self, time_us: u64) -> f64 {
+        (time_us - self.begun_us) as f64 / 1e6
+    }
+}
+
+impl Vehicle {
+    /// The tick that begins now, in which all machines have been shown how things are: a long one if the vehicle rests by itself.
+    pub(super) fn begun_tick(&self) -> BegunTick {
+        let now_us = self.time_us();
+        let long = self.is_left_alone() && self.rests();
+        BegunTick {
+            begun_us: now_us,
+            end_us: if long { now_us - now_us % GRID_US + GRID_US } else { now_us + TICK_US },
+            armed: self.is_armed(),
+            mode: self.mode(),
+            steering: *self.decided.steering(),
+        }
+    }
+
+    /// Whether nobody has asked for anything since a long tick has begun.
+    pub(super) fn goes_on(&self, tick: &BegunTick) -> bool {
+        self.is_left_alone()
+            && (tick.armed, tick.mode) == (self.is_armed(), self.mode())
+            && tick.steering == *self.decided.steering()
+    }
+
+    /// Whether only a request can end its rest: what is asked for stays as it is, and nothing acts on the vehicle that changes with time.
+    fn is_left_alone(&self) -> bool {
+        let (machines, conduct) = (&self.machines, self.conduct());
+        let holds = match self.mode() {
+            _ if !self.is_armed() => true,
+            Mode::Hold => true,
+            Mode::Offboard => {
+                conduct.weathervane.way == IntoWind::Off
+                    && !machines.offboard.is_recent(self.time_us(), conduct.set_point_timeout_s)
+            }
+            _ => false,
+        };
+        let pilot = machines.receiver.pilot();
+        let is_pushed = [&conduct.simulated.pushes.shove, &conduct.simulated.pushes.twist]
+            .iter()
+            .any(|push| push.time_ms > 0);
+        holds
+            && self.closed_loop.is_undisturbed()
+            && self.perception.navigation().is_none()
+            && (pilot.sticks.is_none() && pilot.pulses.is_none())
+            && machines.injection.is_over()
+            && machines.rotors.lost_rotor().is_none()
+            && !is_pushed
+            && !machines.motor_tests.is_running()
+            && !machines.autostart.is_pending()
+            && !machines.boot_fault.is_present()
+            && !machines.turn.is_on()
+            && !conduct.precision.enabled
+            && !conduct.equipment.parachute.enabled
+            && !machines.equipment.parachute().is_released()
+            && machines
+                .equipment
+                .rests(self.decided.region().is_some(), conduct.equipment.gripper_closes_after_s)
+    }
+
+    /// Whether it stands disarmed, or hovers and is to stay where it is.
+    fn rests(&self) -> bool {
+        let outputs = self.outputs();
+        let is_landed = self.machines.landing.is_landed();
+        let is_to_stay = match self.decided.steering() {
+            Steering::Idle { .. } => self.stands(),
+            Steering::Goal(goal) => !is_landed && outputs.setpoint.position_m == goal.position_m,
+            Steering::Motion(motion) => !is_landed && motion.rests(&self.closed_loop.limits().largest()),
+            Steering::Path(_) | Steering::Attitude { .. } | Steering::Descent { .. } => false,
+        };
+        is_to_stay
+            && outputs.setpoint.velocity_m_s.norm() == 0.0
+            && outputs.setpoint.acceleration_m_s2.norm() == 0.0
+            && outputs.velocity_m_s.norm() < SLOW_M_S
+            && outputs.body_rate_rad_s.norm() < SLOW_RAD_S
+    }
+}
