@@ -281,7 +281,8 @@ mod tests {
     }
 
     /// What ships loses at most 1 % on every step when N is off by one or a by 0.05, and so on those of the report. Plans of the position
-    /// break no limit in a gap between its samples: violations stay below a thousandth of the cost.
+    /// break no limit in a gap between its samples, and hardly the speed that they are planned with before the first of them: violations stay
+    /// below five thousandths of the cost.
     #[test]
     fn the_shipped_designs_may_be_off_by_one() {
         let all = compared_loops(&Configuration::default(), Candidate::is_beside).expect("loops");
@@ -293,7 +294,7 @@ mod tests {
                 let loss = compared.off_by_one(0, trial);
                 assert!(loss <= MOST_LOSS, "{}, {name}: {loss}", compared.name);
                 let violations = cost.violation_cost / TrialCost::total(cost);
-                assert!(violations < 1e-3 || compared.name != "position", "{name}: {violations}");
+                assert!(violations < 5e-3 || compared.name != "position", "{name}: {violations}");
             }
         }
     }

@@ -273,7 +273,7 @@ pub trait Configured: Sized + 'static {
         real!("controller.attitude.increment_weight.phi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[0], "R: weight of the rate of change of the commanded roll acceleration over the cube of the bandwidth"),
         real!("controller.attitude.increment_weight.theta", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[1], "R: weight of the rate of change of the commanded pitch acceleration over the cube of the bandwidth"),
         real!("controller.attitude.increment_weight.psi", One, TUNABLE, 1e-9..=1e9, controllers.attitude.increment_weight[2], "R: weight of the rate of change of the commanded yaw acceleration over the cube of the bandwidth"),
-        real!("limits.tilt", Radian, TUNABLE, 0.05..=1.2, limits.tilt_rad, "Largest angle between the thrust axis and the vertical; commands stay within 94 % of it, the rest is for the attitude to overshoot"),
+        real!("limits.tilt", Radian, TUNABLE, 0.05..=1.2, limits.tilt_rad, "Largest angle between the thrust axis and the vertical; goals are flown with at most 91 % of it and trajectories with 96 %, the rest is for the attitude to overshoot"),
         real!("limits.tilt_rate", RadianPerSecond, TUNABLE, 0.05..=20.0, limits.tilt_rate_rad_s, "Largest rate of the tilt command"),
         real!("limits.tilt_acceleration", RadianPerSecondSquared, TUNABLE, 0.1..=500.0, limits.tilt_acceleration_rad_s2, "Largest angular acceleration of the tilt command"),
         real!("limits.thrust.min", One, TUNABLE, 0.0..=0.95, limits.thrust_min, "Smallest thrust command of the altitude controller, as a multiple of the weight"),

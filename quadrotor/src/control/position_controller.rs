@@ -18,7 +18,7 @@ use crate::design::position_limits::{
     AXIS_STATES, Asked, POSITION_STATES, closing_share, horizon_m, in_sight, planned_horizon_m,
     position_bounds,
 };
-use crate::design::translation_design::PositionLaw;
+use crate::design::translation_design::{PositionLaw, position_bandwidth_rad_s};
 use crate::guidance::reference_motion::ReferenceMotion;
 use crate::{CascadeDesign, Configuration};
 
@@ -90,7 +90,7 @@ impl PositionController {
             seen.snap_m_s4 + turning,
             seen.asked_snap_m_s4 + turning,
         ]);
-        let error = planned_error_m(configuration, law.regulator(), seen, reference, lasting.commanded_m_s2);
+        let error = planned_error_m(configuration, design, seen, reference, lasting.commanded_m_s2);
         // The loop is the same in all horizontal directions. Along the error, no corner of a polygon of limits is nearer to the goal
         // than the way to it.
         let turn = Turn::along(&error, design.position_is_isotropic);
@@ -220,7 +220,7 @@ fn lasting_m_s2(reference: &ReferenceMotion<2>, lasting: &LargestLean, asked: &A
 /// see it.
 fn planned_error_m(
     configuration: &Configuration,
-    regulator: Option<&StateFeedback<POSITION_STATES, 2, 2>>,
+    design: &CascadeDesign,
     seen: &HorizontalMotion,
     reference: &ReferenceMotion<2>,
     most_m_s2: f64,
@@ -230,8 +230,14 @@ fn planned_error_m(
     let ahead_m_s = -error.dot(&reference.velocity) / error.norm().max(f64::MIN_POSITIVE);
     let speed_m_s = configuration.limits.speed_horizontal_m_s;
     let closing_m_s = speed_m_s * closing_share(speed_m_s, ahead_m_s);
-    let horizon = if regulator.is_some() { horizon_m } else { planned_horizon_m };
-    let error = in_sight(&error, horizon(closing_m_s, most_m_s2));
+    let regulator = design.position.law.regulator();
+    let horizon_m = if regulator.is_some() {
+        horizon_m(closing_m_s, most_m_s2)
+    } else {
+        let bandwidth_rad_s = position_bandwidth_rad_s(configuration, design.attitude_loop().as_ref());
+        planned_horizon_m(configuration.controllers.kind, closing_m_s, most_m_s2, bandwidth_rad_s)
+    };
+    let error = in_sight(&error, horizon_m);
     match regulator {
         Some(regulator) if configuration.controllers.governor => governed(configuration, regulator, &error),
         _ => error,

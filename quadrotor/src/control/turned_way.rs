@@ -133,7 +133,9 @@ fn asked(configuration: &Configuration, attitude: Option<&AttitudeLoop>, error_m
     }
     let bandwidth_rad_s = position_bandwidth_rad_s(configuration, attitude);
     let most_m_s2 = most_horizontal(0.0, commanded_tilt_rad(configuration));
-    let planned_m = in_sight(error_m, planned_horizon_m(limits.speed_horizontal_m_s, most_m_s2)).norm();
+    let kind = configuration.controllers.kind;
+    let horizon_m = planned_horizon_m(kind, limits.speed_horizontal_m_s, most_m_s2, bandwidth_rad_s);
+    let planned_m = in_sight(error_m, horizon_m).norm();
     let jerk_m_s3 = planned_m * bandwidth_rad_s * bandwidth_rad_s * bandwidth_rad_s;
     let rate = jerk_m_s3 / limits.tilt_rate_rad_s;
     let acceleration = bandwidth_rad_s * jerk_m_s3 / limits.tilt_acceleration_rad_s2;

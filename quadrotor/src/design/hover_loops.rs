@@ -12,7 +12,7 @@ use crate::design::cascade_design::CascadeDesign;
 use crate::design::controller_limits::least_thrust_n;
 use crate::design::loop_problem::LoopProblem;
 use crate::design::position_limits::{Asked, TurnUnderWay, horizon_m, planned_horizon_m, position_bounds};
-use crate::design::translation_design::{altitude_problem, position_problem};
+use crate::design::translation_design::{altitude_problem, position_bandwidth_rad_s, position_problem};
 use crate::{Configuration, ConfigurationError, Mixer, commanded_tilt_rad};
 
 /// A loop under the limits that it has in hover.
@@ -71,6 +71,7 @@ impl HoverLoops {
         let tilted_m_s2 = most_horizontal(0.0, commanded_tilt_rad(configuration));
         let range = vertical_range(configuration, 1.0);
         let fastest_m_s = limits.speed_up_m_s.max(limits.speed_down_m_s);
+        let bandwidth_rad_s = position_bandwidth_rad_s(configuration, design.attitude_loop().as_ref());
         Ok(Self {
             altitude: HoverLoop {
                 problem: altitude,
@@ -86,7 +87,12 @@ impl HoverLoops {
                     TurnUnderWay::default(),
                 )
                 .to_vec(),
-                sight: planned_horizon_m(limits.speed_horizontal_m_s, tilted_m_s2),
+                sight: planned_horizon_m(
+                    configuration.controllers.kind,
+                    limits.speed_horizontal_m_s,
+                    tilted_m_s2,
+                    bandwidth_rad_s,
+                ),
             },
             lean: HoverLoop { problem: lean, upper: room.lean_bounds().to_vec(), sight: SIGHT_RAD },
             turn: HoverLoop {

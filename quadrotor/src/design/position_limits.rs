@@ -1,10 +1,12 @@
 //! What the position controller keeps within.
 
+use alloc::vec::Vec;
+
 use lmpc::SignalLimit;
 use nalgebra::Vector2;
 
-use crate::design::limited_samples::in_time;
-use crate::{GRAVITY_M_S2, Limits};
+use crate::design::limited_samples::{TRANSLATION_SAMPLE_S, in_time};
+use crate::{ControllerKind, GRAVITY_M_S2, Limits};
 
 /// Sides of the polygons about circles of tilt and speed: their corners lie 0.86 % outside.
 const SIDES: usize = 24;
@@ -17,14 +19,28 @@ pub(crate) const POSITION_BOUNDS: usize = 3 * SIDES + 2 * COARSE_SIDES;
 static PRESENT_TILT: &[usize] = &[0, 1, 2, 3, 4];
 /// The later ones: those at which it can be chosen, and some of those at which it settles.
 static TILT: &[usize] = &[6, 8, 12, 18, 28];
-/// Samples of the speed, which follows later.
-static MOVING: &[usize] = &[4, 7, 10, 13, 16, 20, 26, 34, 50, 80];
+/// Samples of the speed, which follows later, as far as they come after the first two: see [`first_moving`].
+static MOVING: &[usize] = &[10, 13, 16, 20, 26, 34, 50, 80];
+/// The earliest first one.
+const FIRST_MOVING: usize = 4;
+/// From the first of them to the second, and the earliest second one.
+const MOVING_ON: usize = 2;
+const SECOND_MOVING: usize = 7;
+/// A speed is limited from when the attitude loop has answered for this long, s, and the next tenth of a second.
+const ANSWERED_S: f64 = 0.07;
+const TENTH_SAMPLES: usize = 2;
 /// Samples of the rate of the tilt: while commands change fast.
 static LEANING: &[usize] = &[1, 2, 3, 5, 8, 13, 20];
 /// Samples of its acceleration, which follows a command within one of them. Without the fourth, plans exceed the limit there, and when it
 /// has come to be the third, all limits must give way.
 static TURNING: &[usize] = &[1, 2, 3, 4, 5, 8, 13, 20];
 
+/// Share of the speed limit that is planned with. A plan is free until the first sample at which its speed is limited, and gains a little
+/// each time.
+const PLANNED_SPEED: f64 = 0.995;
+/// The terms of [`planned_horizon_m`] per speed, s and rad.
+const SETTLING_S: f64 = 0.8;
+const BEHIND_RAD: f64 = 1.25;
 /// By how much the speed of a reference at the speed limit may be exceeded to catch up with it, as a share of the limit.
 const CATCHING_UP: f64 = 0.01;
 /// The least of it, m/s.
@@ -51,8 +67,8 @@ pub(crate) const AXIS_STATES: usize = 6;
 pub(crate) const POSITION_STATES: usize = 2 * AXIS_STATES;
 
 /// The commanded acceleration, and the speed, jerk and snap that follow from it, in all directions alike. They stand for tilt, its
-/// rate and its angular acceleration.
-pub(crate) fn position_limits(sample_time_s: f64) -> [SignalLimit; 5] {
+/// rate and its angular acceleration. The speed is limited from a sample on.
+pub(crate) fn position_limits(sample_time_s: f64, first_moving: usize) -> [SignalLimit; 5] {
     let of_states = |derivative: usize, sides: usize, samples: &[usize]| {
         let limited = [derivative, AXIS_STATES + derivative];
         let samples = in_time(samples, sample_time_s);
@@ -68,8 +84,27 @@ pub(crate) fn position_limits(sample_time_s: f64) -> [SignalLimit; 5] {
         of_inputs(TILT),
         of_states(4, COARSE_SIDES, TURNING).giving_way_by(GRAVITY_M_S2 * TURNING_RAD_S2),
         of_states(3, COARSE_SIDES, LEANING).giving_way_by(GRAVITY_M_S2 * LEANING_RAD_S),
-        of_states(1, SIDES, MOVING).giving_way_by(SPEED_M_S),
+        of_states(1, SIDES, &moving(first_moving)).giving_way_by(SPEED_M_S),
     ]
+}
+
+/// The first sample at which a plan of a controller limits its speed, over an attitude loop that lags behind by so much, s.
+///
+/// A plan of a few functions of time that had to correct its speed before the attitude loop can would be a feedback with a gain of many times
+/// its own: with another mass than it believes in, or rotors that slow down more slowly, it swings. One that was limited later still would
+/// first speed up, and cruise above the limit. A plan of free moves has no such gain.
+pub(crate) fn first_moving(kind: ControllerKind, attitude_delay_s: f64) -> usize {
+    if kind == ControllerKind::StateSpaceMpc {
+        return FIRST_MOVING;
+    }
+    let tenths = libm::ceil((ANSWERED_S + attitude_delay_s) / (TENTH_SAMPLES as f64 * TRANSLATION_SAMPLE_S));
+    (TENTH_SAMPLES * tenths as usize).max(FIRST_MOVING)
+}
+
+/// Samples of the speed from the first one on.
+fn moving(first: usize) -> Vec<usize> {
+    let second = (first + MOVING_ON).max(SECOND_MOVING);
+    [first, second].into_iter().chain(MOVING.iter().copied().filter(|sample| *sample > second)).collect()
 }
 
 /// How the tilt is accelerated whatever is commanded now. A plan that would have to prevent it could only fail, give way at all of its
@@ -120,7 +155,7 @@ pub(crate) fn position_bounds(
         _ if bound < 2 * SIDES => lasting_m_s2,
         _ if bound < 2 * SIDES + COARSE_SIDES => turning,
         _ if bound < 2 * SIDES + 2 * COARSE_SIDES => leaning,
-        _ => speed,
+        _ => PLANNED_SPEED * speed,
     })
 }
 
@@ -140,10 +175,25 @@ pub(crate) fn horizon_m(speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
 /// limits.
 ///
 /// ```text
-/// v²/(2a) + 1.3 s · v
+/// v²/(5a) + v (0.8 s + 1.25/ω)      of a few functions of time
+/// v²/(2a) + 1.3 s · v               of free moves
 /// ```
-pub(crate) fn planned_horizon_m(speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
-    speed_m_s * speed_m_s / (2.0 * acceleration_m_s2) + 1.3 * speed_m_s
+///
+/// The second term of the former is about the error that a feedback with a bandwidth ω closes at the speed v. It is hardly further, so
+/// that little of what such a plan does at the speed limit is held back by that.
+pub(crate) fn planned_horizon_m(
+    kind: ControllerKind,
+    speed_m_s: f64,
+    acceleration_m_s2: f64,
+    bandwidth_rad_s: f64,
+) -> f64 {
+    let braking_m = speed_m_s * speed_m_s / acceleration_m_s2;
+    match kind {
+        ControllerKind::StateSpaceMpc => braking_m / 2.0 + 1.3 * speed_m_s,
+        ControllerKind::Lmpc | ControllerKind::Dlqr => {
+            braking_m / 5.0 + speed_m_s * (SETTLING_S + BEHIND_RAD / bandwidth_rad_s)
+        }
+    }
 }
 
 /// The largest speed, m/s, while a reference asks for speeds up to `asked_m_s`: the limit, and what it takes to catch up with it.
@@ -184,16 +234,16 @@ mod tests {
     use nalgebra::Vector2;
 
     use super::{
-        Asked, COARSE_SIDES, POSITION_BOUNDS, SIDES, TurnUnderWay, horizon_m, in_sight, planned_horizon_m,
-        position_bounds, position_limits,
+        Asked, COARSE_SIDES, POSITION_BOUNDS, SIDES, TurnUnderWay, first_moving, horizon_m, in_sight, moving,
+        planned_horizon_m, position_bounds, position_limits,
     };
     use crate::design::limited_samples::TRANSLATION_SAMPLE_S;
-    use crate::{GRAVITY_M_S2, Limits};
+    use crate::{ControllerKind, GRAVITY_M_S2, Limits};
 
     #[test]
     fn each_side_has_its_bound() {
         let sides: usize =
-            position_limits(TRANSLATION_SAMPLE_S).iter().map(|limit| limit.directions.nrows()).sum();
+            position_limits(TRANSLATION_SAMPLE_S, 6).iter().map(|limit| limit.directions.nrows()).sum();
         assert_eq!(sides, POSITION_BOUNDS);
         let limits = Limits::default();
         let bounds = position_bounds(
@@ -206,7 +256,20 @@ mod tests {
         assert!(bounds[SIDES..2 * SIDES].iter().all(|bound| *bound == 4.0));
         assert_eq!(bounds[2 * SIDES], GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
         assert_eq!(bounds[2 * SIDES + COARSE_SIDES], GRAVITY_M_S2 * limits.tilt_rate_rad_s);
-        assert_eq!(bounds[POSITION_BOUNDS - 1], 8.0);
+        assert_eq!(bounds[POSITION_BOUNDS - 1], 0.995 * 8.0);
+    }
+
+    #[test]
+    fn a_speed_is_limited_from_when_the_attitude_has_answered() {
+        let of = |kind: ControllerKind| {
+            [0.01, 0.103, 0.143, 0.218, 0.277].map(|delay_s| first_moving(kind, delay_s))
+        };
+        assert_eq!(of(ControllerKind::Lmpc), [4, 4, 6, 6, 8]);
+        assert_eq!(of(ControllerKind::StateSpaceMpc), [4; 5]);
+        assert_eq!(moving(4), [4, 7, 10, 13, 16, 20, 26, 34, 50, 80]);
+        assert_eq!(moving(6), [6, 8, 10, 13, 16, 20, 26, 34, 50, 80]);
+        assert_eq!(moving(8), [8, 10, 13, 16, 20, 26, 34, 50, 80]);
+        assert_eq!(moving(100), [100, 102]);
     }
 
     /// What is under way is not forbidden; what is slower than the limit changes nothing.
@@ -265,13 +328,15 @@ mod tests {
                 [POSITION_BOUNDS - 1]
         };
         // At the limit by one per cent of it.
-        assert!((speed(8.0) - 8.08).abs() < 1e-12);
-        assert!((speed(10.0) - 10.8).abs() < 1e-12);
+        assert!((speed(8.0) - 0.995 * 8.08).abs() < 1e-12);
+        assert!((speed(10.0) - 0.995 * 10.8).abs() < 1e-12);
     }
 
     #[test]
     fn far_goals_are_seen_at_the_horizon() {
-        assert!((planned_horizon_m(8.0, 4.0) - (8.0 + 10.4)).abs() < 1e-12);
+        let planned = |kind: ControllerKind| planned_horizon_m(kind, 8.0, 4.0, 2.5);
+        assert!((planned(ControllerKind::Lmpc) - (3.2 + 10.4)).abs() < 1e-12);
+        assert!((planned(ControllerKind::StateSpaceMpc) - (8.0 + 10.4)).abs() < 1e-12);
         let horizon = horizon_m(8.0, 4.0);
         assert!((horizon - (16.0 + 9.6)).abs() < 1e-12);
         let near = Vector2::new(3.0, -4.0);

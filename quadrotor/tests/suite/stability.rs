@@ -2,8 +2,8 @@
 
 use crate::common::goal;
 use quadrotor::{
-    Configuration, ConfigurationError, ControllerKind, PredictionModel, Simulation, StabilityReport,
-    StabilityWarning,
+    AirframePreset, Configuration, ConfigurationError, ControllerKind, Inputs, PredictionModel, Simulation,
+    StabilityReport, StabilityWarning,
 };
 
 type Change = fn(&mut Configuration);
@@ -267,4 +267,17 @@ fn ordinary_vehicles_are_accepted() {
             }
         }
     }
+}
+
+/// A value that makes the loops of another airframe unstable is named: that differs from the default in more values than are tried.
+#[test]
+fn what_is_wrong_with_another_airframe_is_named() {
+    let mut configuration = Configuration::for_airframe(&AirframePreset::Crazyflie.airframe()).unwrap();
+    configuration.sensors.output_feedback = true;
+    configuration.sensors.attitude_noise_rad = 0.005;
+    configuration.controllers.learning = false;
+    configuration.controllers.mass_factor = 1.5;
+    let error = Simulation::new(&configuration, &Inputs::default()).expect_err("refused").to_string();
+    assert!(error.starts_with("the roll loop is unstable"), "{error}");
+    assert!(error.ends_with("caused by controller.mass_factor = 1.5, stable with 1"), "{error}");
 }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::control::learning::bounded_estimate::{BoundedEstimate, Prior};
 use crate::control::learning::excitation::{Excitation, Shown};
+use crate::control::learning::gust_memory::{GustMemory, Surprise};
 use crate::control::learning::motion_equation::{
     MEMORY_S, MeasuredMotion, MotionEquation, Sampled, Terms, noise_of_positions, noise_of_velocities,
 };
@@ -55,6 +56,8 @@ const DRAG_DEVIATIONS: f64 = 2.0;
 const GUSTY_S: f64 = 10.0;
 /// Surprises of late, each of which counts less by e within [`GUSTY_S`], beyond which the next one is a gust.
 const MOST_SURPRISES: f64 = 1.5;
+/// A surprise may be a gust while the thrust per mass mostly keeps within this share of it.
+const STEADY_SHARE: f64 = 0.4;
 /// How many times more a gust may change the force along the thrust than it shows at once across it.
 const GUST_SWINGS: f64 = 5.0;
 
@@ -103,12 +106,18 @@ pub(crate) struct MassAndDrag {
     latest_us: Option<u64>,
     /// Force per mass beside thrust and drag, averaged over seconds, NED, m/s².
     steady_force_m_s2: Vector3<f64>,
+    /// Thrust per mass, averaged likewise, m/s².
+    steady_thrust_m_s2: f64,
+    /// How far the thrust per mass mostly is from that, m/s².
+    unsteady_thrust_m_s2: f64,
     /// Time in which there is no surprise, s.
     settling_s: f64,
     /// How much forces from outside change, m/s², by those across the thrust: no mass does that.
     gusts_m_s2: f64,
     /// How many surprises there were of late: each counts for less as time goes by.
     surprises: f64,
+    /// What was known before the latest surprise, as long as that may be a gust.
+    before: Option<GustMemory<UNKNOWNS>>,
 }
 
 impl MassAndDrag {
@@ -120,9 +129,12 @@ impl MassAndDrag {
             estimate: BoundedEstimate::new(&prior(configuration), &believed(configuration)),
             latest_us: None,
             steady_force_m_s2: Vector3::zeros(),
+            steady_thrust_m_s2: GRAVITY_M_S2,
+            unsteady_thrust_m_s2: 0.0,
             settling_s: SETTLING_S,
             gusts_m_s2: 0.0,
             surprises: 0.0,
+            before: None,
         }
     }
 
@@ -143,9 +155,10 @@ impl MassAndDrag {
 
     /// Moments of inertia for a learned mass as a share of those that are configured. The mass does not tell them: a model that
     /// is wrong is so in both, a load near the centre only in the mass. Torques for too little inertia cost the attitude its
-    /// damping, for somewhat too much they do not: they are believed to grow with the mass up to twice, and never to shrink.
+    /// damping, for somewhat too much they do not: they are believed to grow with the mass up to twice, and never to shrink below those of the airframe.
     fn inertia_share(&self, configuration: &Configuration) -> f64 {
-        (self.mass_factor() / configuration.controllers.mass_factor).clamp(1.0, MOST_INERTIA_SHARE)
+        let believed = configuration.controllers.mass_factor;
+        (self.mass_factor() / believed).clamp(1.0 / believed.max(1.0), MOST_INERTIA_SHARE)
     }
 
     /// A configuration with what was learned in place of what was believed, if it is to learn.
@@ -174,6 +187,7 @@ impl MassAndDrag {
             let mut mean = believed(after);
             mean[0] = self.estimate.mean()[0];
             self.estimate = BoundedEstimate::new(&prior(after), &mean);
+            self.before = None;
             self.interrupt();
         }
     }
@@ -182,7 +196,7 @@ impl MassAndDrag {
     pub(crate) fn take_off(&mut self, configuration: &Configuration) {
         self.estimate.open(&prior(configuration), &[true; UNKNOWNS]);
         self.settling_s = SETTLING_S;
-        (self.gusts_m_s2, self.surprises) = (0.0, 0.0);
+        (self.gusts_m_s2, self.surprises, self.before) = (0.0, 0.0, None);
         self.interrupt();
     }
 
@@ -245,6 +259,7 @@ impl MassAndDrag {
     ) {
         let prior = &prior(configuration);
         let rows = [0, 1, 2].map(|axis| row(terms, axis));
+        self.watch_for_an_end(&rows[2], terms, interval_s);
         let unexplained_m_s2 = self.innovation(&rows, terms);
         let change_m_s2 = unexplained_m_s2 + self.change_of_force_m_s2(terms);
         // The estimate follows a force that swings within seconds, but for its delay; a drag that is still to be learned swings with the speed.
@@ -258,6 +273,15 @@ impl MassAndDrag {
         let along_m_s2 = libm::fabs(change_m_s2.z);
         let is_surprised = self.settling_s == 0.0 && along_m_s2 > surprise_m_s2;
         if is_surprised && self.surprises <= MOST_SURPRISES {
+            let surprise = Surprise {
+                jump_m_s2: along_m_s2,
+                thrust_m_s2: terms.thrust_m_s2 / terms.filled,
+                steady_thrust_m_s2: self.steady_thrust_m_s2,
+            };
+            // Thrust that keeps changing shows a mass that is wrong.
+            if self.unsteady_thrust_m_s2 < STEADY_SHARE * along_m_s2 {
+                self.before.get_or_insert(GustMemory::new(self.estimate, surprise));
+            }
             // What the filter remembers is of before. Drag does not jump.
             self.estimate.open(prior, &learned_from(&Shown { mass: true, drag: [false; 3] }));
             self.steady_force_m_s2 = self.force_m_s2();
@@ -283,6 +307,29 @@ impl MassAndDrag {
         }
         let share = if self.settling_s > 0.0 { 1.0 } else { -libm::expm1(-interval_s / STEADY_FORCE_S) };
         self.steady_force_m_s2 += (self.force_m_s2() - self.steady_force_m_s2) * share;
+        let thrust_m_s2 = terms.thrust_m_s2 / terms.filled;
+        let unsteady_m_s2 = libm::fabs(thrust_m_s2 - self.steady_thrust_m_s2);
+        let slow = -libm::expm1(-interval_s / STEADY_FORCE_S);
+        self.unsteady_thrust_m_s2 += (unsteady_m_s2 - self.unsteady_thrust_m_s2) * slow;
+        self.steady_thrust_m_s2 += (thrust_m_s2 - self.steady_thrust_m_s2) * slow;
+    }
+
+    /// Goes back to what was known before a surprise that has ended: it was a gust, and no mass.
+    fn watch_for_an_end(&mut self, along: &Unknowns, terms: &Terms, interval_s: f64) {
+        let Some(before) = &mut self.before else { return };
+        let thrust_m_s2 = terms.thrust_m_s2 / terms.filled;
+        let missed_m_s2 = before.estimate().innovation(along, terms.specific_force_m_s2.z) / terms.filled;
+        let has_ended = before.has_ended((missed_m_s2, thrust_m_s2), terms.filled, interval_s);
+        let known = *before;
+        if has_ended {
+            self.estimate = *known.estimate();
+            self.steady_force_m_s2 = self.force_m_s2();
+            let swing_m_s2 = known.most_missed_m_s2() / GUST_SWINGS;
+            self.gusts_m_s2 = self.gusts_m_s2.max(swing_m_s2).min(MOST_FORCE_M_S2);
+        }
+        if has_ended || known.age_s() > GUSTY_S {
+            self.before = None;
+        }
     }
 
     /// Deviation of the equation along the thrust, m/s²: a gust across the thrust comes with one along it, which would pass for mass.
@@ -332,6 +379,7 @@ impl MassAndDrag {
             && (0.0..=SETTLING_S).contains(&self.settling_s)
             && (0.0..=MOST_FORCE_M_S2).contains(&self.gusts_m_s2)
             && (0.0..=MOST_SURPRISES + 1.0).contains(&self.surprises)
+            && self.before.is_none_or(|before| before.is_possible(&prior(configuration)))
     }
 }
 

@@ -2,5 +2,6 @@
 
 pub(crate) mod bounded_estimate;
 pub(crate) mod excitation;
+pub(crate) mod gust_memory;
 pub(crate) mod mass_and_drag;
 pub(crate) mod motion_equation;

@@ -3,6 +3,7 @@
 use core::f64::consts::LN_2;
 
 use crate::design::stability::cause::Cause;
+use crate::design::stability::loop_stability::LoopStability;
 use crate::design::stability::noise_effect::NoiseEffect;
 use crate::design::stability::stability_report::StabilityReport;
 use crate::{CascadeDesign, Configuration, ConfigurationError};
@@ -35,12 +36,7 @@ pub(crate) fn judged(
     }
     let report = report(configuration, design)?;
     if let Some(each) = report.unstable() {
-        let default = Configuration::default();
-        return Err(ConfigurationError::Unstable {
-            name: each.name,
-            doubling_s: LN_2 / -each.decay_rate_1_s,
-            cause: Cause::of(configuration, flown.into_iter().chain([&default])),
-        });
+        return Err(unstable(each, configuration, flown));
     }
     let (tilt_rad, limit_rad) = (report.tilt_spread_rad(), configuration.limits.tilt_rad);
     let share = report.torque_share(configuration, design);
@@ -53,6 +49,21 @@ pub(crate) fn judged(
     };
     let (name, value) = effect.loudest_source(configuration, design)?;
     Err(ConfigurationError::Noise { name, value, effect })
+}
+
+fn unstable(
+    each: &LoopStability,
+    configuration: &Configuration,
+    flown: Option<&Configuration>,
+) -> ConfigurationError {
+    // Another airframe differs in so many values from the default that what it flies with by default comes nearer.
+    let (own, default) =
+        (Configuration::for_airframe(&configuration.airframe).ok(), Configuration::default());
+    ConfigurationError::Unstable {
+        name: each.name,
+        doubling_s: LN_2 / -each.decay_rate_1_s,
+        cause: Cause::of(configuration, flown.into_iter().chain([&default]).chain(&own)),
+    }
 }
 
 /// The report of a configuration, whatever it says.
