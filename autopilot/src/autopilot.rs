@@ -119,6 +119,7 @@ impl Autopilot {
         let Context { vehicle, reboot_us, quiet_until_us, .. } = &self.context;
         match reboot_us {
             Some(_) => 1,
+            None if self.services.are_busy() => 1,
             None => quiet_until_us.saturating_sub(vehicle.time_us()).div_ceil(TICK_US),
         }
     }

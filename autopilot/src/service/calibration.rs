@@ -124,6 +124,10 @@ impl Service for Calibrations {
         }
     }
 
+    fn is_busy(&self) -> bool {
+        self.running.is_some()
+    }
+
     /// Goes on with the one that is under way.
     fn tick(&mut self, context: &mut Context) {
         let Some(mut running) = self.running else { return };

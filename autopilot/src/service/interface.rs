@@ -117,7 +117,13 @@ pub trait Service: Debug + Send {
         Err(Refusal::Unsupported("not supported".to_owned()))
     }
 
-    /// Called after each tick of the vehicle.
+    /// Whether it is to be called after every tick, because it acts on the vehicle at a time of its own. Otherwise a vehicle that rests may fly
+    /// several at once.
+    fn is_busy(&self) -> bool {
+        false
+    }
+
+    /// Called after each tick of the vehicle, or after several.
     fn tick(&mut self, context: &mut Context) {
         context.rests = true;
     }

@@ -85,6 +85,10 @@ impl Service for MagnetometerCalibrations {
         Ok(Progress::Done)
     }
 
+    fn is_busy(&self) -> bool {
+        self.running.is_some()
+    }
+
     fn tick(&mut self, context: &mut Context) {
         let Some(calibration) = &mut self.running else { return };
         let time_us = context.vehicle.time_us();

@@ -209,6 +209,11 @@ impl Registry {
         }
     }
 
+    /// Whether one of them is to be called after every tick.
+    pub fn are_busy(&self) -> bool {
+        self.ticking.0.iter().any(|index| self.services.get(*index).is_some_and(|service| service.is_busy()))
+    }
+
     /// A tick of simulation time is over.
     pub fn tick(&mut self, context: &mut Context) {
         self.ticking.call(&mut self.services, context, |service, context| service.tick(context));

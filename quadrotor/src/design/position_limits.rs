@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use lmpc::SignalLimit;
 use nalgebra::Vector2;
 
-use crate::design::limited_samples::{TRANSLATION_SAMPLE_S, in_time};
+use crate::design::limited_samples::in_time;
 use crate::{ControllerKind, GRAVITY_M_S2, Limits};
 
 /// Sides of the polygons about circles of tilt and speed: their corners lie 0.86 % outside.
@@ -28,7 +28,7 @@ const MOVING_ON: usize = 2;
 const SECOND_MOVING: usize = 7;
 /// A speed is limited from when the attitude loop has answered for this long, s, and the next tenth of a second.
 const ANSWERED_S: f64 = 0.07;
-const TENTH_SAMPLES: usize = 2;
+const TENTH_S: f64 = 0.1;
 /// Samples of the rate of the tilt: while commands change fast.
 static LEANING: &[usize] = &[1, 2, 3, 5, 8, 13, 20];
 /// Samples of its acceleration, which follows a command within one of them. Without the fourth, plans exceed the limit there, and when it
@@ -69,9 +69,8 @@ pub(crate) const POSITION_STATES: usize = 2 * AXIS_STATES;
 /// The commanded acceleration, and the speed, jerk and snap that follow from it, in all directions alike. They stand for tilt, its
 /// rate and its angular acceleration. The speed is limited from a sample on.
 pub(crate) fn position_limits(sample_time_s: f64, first_moving: usize) -> [SignalLimit; 5] {
-    let of_states = |derivative: usize, sides: usize, samples: &[usize]| {
+    let of_states = |derivative: usize, sides: usize, samples: Vec<usize>| {
         let limited = [derivative, AXIS_STATES + derivative];
-        let samples = in_time(samples, sample_time_s);
         SignalLimit::of_states(POSITION_STATES, 2, &limited, SignalLimit::polygon(sides), samples)
     };
     let of_inputs = |samples: &[usize]| {
@@ -82,9 +81,11 @@ pub(crate) fn position_limits(sample_time_s: f64, first_moving: usize) -> [Signa
     [
         of_inputs(PRESENT_TILT),
         of_inputs(TILT),
-        of_states(4, COARSE_SIDES, TURNING).giving_way_by(GRAVITY_M_S2 * TURNING_RAD_S2),
-        of_states(3, COARSE_SIDES, LEANING).giving_way_by(GRAVITY_M_S2 * LEANING_RAD_S),
-        of_states(1, SIDES, &moving(first_moving)).giving_way_by(SPEED_M_S),
+        of_states(4, COARSE_SIDES, in_time(TURNING, sample_time_s))
+            .giving_way_by(GRAVITY_M_S2 * TURNING_RAD_S2),
+        of_states(3, COARSE_SIDES, in_time(LEANING, sample_time_s))
+            .giving_way_by(GRAVITY_M_S2 * LEANING_RAD_S),
+        of_states(1, SIDES, moving(first_moving, sample_time_s)).giving_way_by(SPEED_M_S),
     ]
 }
 
@@ -93,18 +94,25 @@ pub(crate) fn position_limits(sample_time_s: f64, first_moving: usize) -> [Signa
 /// A plan of a few functions of time that had to correct its speed before the attitude loop can would be a feedback with a gain of many times
 /// its own: with another mass than it believes in, or rotors that slow down more slowly, it swings. One that was limited later still would
 /// first speed up, and cruise above the limit. A plan of free moves has no such gain.
-pub(crate) fn first_moving(kind: ControllerKind, attitude_delay_s: f64) -> usize {
+pub(crate) fn first_moving(kind: ControllerKind, attitude_delay_s: f64, sample_time_s: f64) -> usize {
+    let earliest = in_time(&[FIRST_MOVING], sample_time_s).first().copied().unwrap_or(FIRST_MOVING);
     if kind == ControllerKind::StateSpaceMpc {
-        return FIRST_MOVING;
+        return earliest;
     }
-    let tenths = libm::ceil((ANSWERED_S + attitude_delay_s) / (TENTH_SAMPLES as f64 * TRANSLATION_SAMPLE_S));
-    (TENTH_SAMPLES * tenths as usize).max(FIRST_MOVING)
+    let tenths = libm::ceil((ANSWERED_S + attitude_delay_s) / TENTH_S);
+    // Tenths are whole numbers of most samples, but for rounding.
+    let samples = libm::ceil(tenths * TENTH_S / sample_time_s - 1e-6);
+    (samples as usize).max(earliest)
 }
 
 /// Samples of the speed from the first one on.
-fn moving(first: usize) -> Vec<usize> {
-    let second = (first + MOVING_ON).max(SECOND_MOVING);
-    [first, second].into_iter().chain(MOVING.iter().copied().filter(|sample| *sample > second)).collect()
+fn moving(first: usize, sample_time_s: f64) -> Vec<usize> {
+    let in_time = |sample: usize| in_time(&[sample], sample_time_s).first().copied().unwrap_or(sample);
+    let second = (first + in_time(MOVING_ON)).max(in_time(SECOND_MOVING));
+    let mut samples = alloc::vec![first, second];
+    samples.extend(MOVING.iter().map(|sample| in_time(*sample)).filter(|sample| *sample > second));
+    samples.dedup();
+    samples
 }
 
 /// How the tilt is accelerated whatever is commanded now. A plan that would have to prevent it could only fail, give way at all of its
@@ -261,15 +269,19 @@ mod tests {
 
     #[test]
     fn a_speed_is_limited_from_when_the_attitude_has_answered() {
-        let of = |kind: ControllerKind| {
-            [0.01, 0.103, 0.143, 0.218, 0.277].map(|delay_s| first_moving(kind, delay_s))
+        let of = |kind: ControllerKind, sample_time_s: f64| {
+            [0.01, 0.103, 0.143, 0.218, 0.277].map(|delay_s| first_moving(kind, delay_s, sample_time_s))
         };
-        assert_eq!(of(ControllerKind::Lmpc), [4, 4, 6, 6, 8]);
-        assert_eq!(of(ControllerKind::StateSpaceMpc), [4; 5]);
-        assert_eq!(moving(4), [4, 7, 10, 13, 16, 20, 26, 34, 50, 80]);
-        assert_eq!(moving(6), [6, 8, 10, 13, 16, 20, 26, 34, 50, 80]);
-        assert_eq!(moving(8), [8, 10, 13, 16, 20, 26, 34, 50, 80]);
-        assert_eq!(moving(100), [100, 102]);
+        assert_eq!(of(ControllerKind::Lmpc, 0.05), [4, 4, 6, 6, 8]);
+        assert_eq!(of(ControllerKind::Lmpc, 0.02), [5, 10, 15, 15, 20]);
+        assert_eq!(of(ControllerKind::Lmpc, 0.15), [1, 2, 2, 2, 3]);
+        assert_eq!(of(ControllerKind::StateSpaceMpc, 0.05), [4; 5]);
+        assert_eq!(moving(4, 0.05), [4, 7, 10, 13, 16, 20, 26, 34, 50, 80]);
+        assert_eq!(moving(6, 0.05), [6, 8, 10, 13, 16, 20, 26, 34, 50, 80]);
+        assert_eq!(moving(8, 0.05), [8, 10, 13, 16, 20, 26, 34, 50, 80]);
+        assert_eq!(moving(15, 0.02), [15, 17, 20, 26, 34, 50, 80]);
+        assert_eq!(moving(2, 0.2), [2, 3, 4, 5, 7, 9, 13, 20]);
+        assert_eq!(moving(100, 0.05), [100, 102]);
     }
 
     /// What is under way is not forbidden; what is slower than the limit changes nothing.

@@ -124,7 +124,8 @@ pub(crate) fn position_problem(
     let settings = &configuration.controllers.position;
     let model = over_attitude(attitude, &configuration.drag_1_s().xy(), settings.sample_time_s())?;
     let bandwidth = [position_bandwidth_rad_s(configuration, Some(attitude)); 2].into();
-    let first_moving = first_moving(configuration.controllers.kind, attitude.delay_s());
+    let first_moving =
+        first_moving(configuration.controllers.kind, attitude.delay_s(), settings.sample_time_s());
     let limits = position_limits(settings.sample_time_s(), first_moving);
     Ok(LoopProblem::new(settings, &bandwidth, limits, SIGHT_M, &model)?
         .planned_about(POSITION_STABILIZING_SHARE))

@@ -9,9 +9,10 @@ use vehicle::parameters::Speed;
 use super::{Fleet, Member};
 use crate::pace::Pace;
 
-/// The links are looked at this often at least.
+/// The links are looked at this often, and after each round of all vehicles.
 const BURST: Duration = Duration::from_millis(2);
-/// Ticks that one vehicle flies between two looks at the clock, which costs about as much as one. Several share them.
+/// Ticks that one vehicle flies between two looks at the clock, which costs about as much as one. Several share them, as far as each flies
+/// [`AT_ONCE`].
 const MOST_TICKS: u64 = 10;
 /// Of each vehicle so many, or a multiple of it, if they are due: one that hovers flies them at once.
 const AT_ONCE: u64 = 5;

@@ -9,6 +9,7 @@ use quadrotor::{
 use super::change_error::ChangeError;
 use super::foreign_flight::ForeignFlight;
 use super::steering::Steering;
+use super::tick::TICK_S;
 use crate::FlightError;
 use crate::designs::design;
 use crate::foreign::{ForeignDescription, ForeignModel, ForeignMotion};
@@ -138,7 +139,7 @@ impl ClosedLoop {
         }
     }
 
-    /// Flies on by `duration_us`, as it is steered.
+    /// Flies on by `duration_us`, as it is steered. What goes on with each tick goes on by one: longer flights are those of what rests.
     ///
     /// # Errors
     /// [`FlightError`]: the flight has left the range of numbers, or the model from elsewhere has failed.
@@ -149,9 +150,8 @@ impl ClosedLoop {
         duration_us: u64,
     ) -> Result<(), FlightError> {
         let time_us = conditions.outputs.time_us;
-        let dt_s = duration_us as f64 / 1e6;
         let inputs = &mut self.inputs;
-        steering.apply(&self.simulation, &self.limits, conditions.outputs, dt_s, inputs);
+        steering.apply(&self.simulation, &self.limits, conditions.outputs, TICK_S, inputs);
         self.wind_m_s = self.wind.velocity_m_s(time_us, conditions.height_m);
         inputs.ground_z_m = conditions.ground_z_m;
         let (force_n, torque_n_m) = conditions.load;

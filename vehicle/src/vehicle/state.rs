@@ -141,7 +141,7 @@ impl Vehicle {
             }
             None => (self.begin_tick(), false),
         };
-        let time_us = tick.end_us.min(now_us + most.max(1) * TICK_US);
+        let time_us = tick.end_us.min(now_us.saturating_add(most.max(1).saturating_mul(TICK_US)));
         if goes_on {
             self.closed_loop.go_on(time_us)?;
         } else {

@@ -60,6 +60,10 @@ impl Service for TrackedSystem {
         }
     }
 
+    fn is_busy(&self) -> bool {
+        self.seen_us.is_some()
+    }
+
     fn tick(&mut self, context: &mut Context) {
         let vehicle = &mut context.vehicle;
         let stale = self.seen_us.is_some_and(|seen_us| vehicle.time_us() > seen_us + STALE_US);

@@ -103,6 +103,10 @@ impl Service for Missions {
         Ok(Progress::Done)
     }
 
+    fn is_busy(&self) -> bool {
+        self.uploads.are_under_way()
+    }
+
     fn tick(&mut self, context: &mut Context) {
         self.uploads.update(context);
     }

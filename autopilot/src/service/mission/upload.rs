@@ -71,6 +71,11 @@ impl Upload {
 }
 
 impl Uploads {
+    /// Whether one is being received: it is given up at a time of its own.
+    pub fn are_under_way(&self) -> bool {
+        self.receiving.is_some()
+    }
+
     /// MISSION_COUNT: an upload begins.
     pub fn count(&mut self, context: &mut Context, origin: &Origin, frame: &Frame) {
         let payload = frame.payload();

@@ -25,7 +25,7 @@ pub(crate) struct GustMemory<const N: usize> {
     surprise: Surprise,
     /// The most that the estimate has missed of the acceleration along the thrust since then, m/s².
     most_missed_m_s2: f64,
-    age_s: f64,
+    since_us: u64,
     gone_s: f64,
 }
 
@@ -53,8 +53,8 @@ impl Surprise {
 
 impl<const N: usize> GustMemory<N> {
     /// What is known at a surprise.
-    pub(crate) fn new(estimate: BoundedEstimate<N>, surprise: Surprise) -> Self {
-        Self { estimate, surprise, most_missed_m_s2: surprise.jump_m_s2, age_s: 0.0, gone_s: 0.0 }
+    pub(crate) fn new(estimate: BoundedEstimate<N>, surprise: Surprise, since_us: u64) -> Self {
+        Self { estimate, surprise, most_missed_m_s2: surprise.jump_m_s2, since_us, gone_s: 0.0 }
     }
 
     /// What was known.
@@ -67,9 +67,9 @@ impl<const N: usize> GustMemory<N> {
         self.most_missed_m_s2
     }
 
-    /// Time since the surprise, s.
-    pub(crate) fn age_s(&self) -> f64 {
-        self.age_s
+    /// Time of the surprise, µs.
+    pub(crate) fn since_us(&self) -> u64 {
+        self.since_us
     }
 
     /// Looks at what the estimate of before misses of the acceleration under a thrust per mass, m/s², by an equation that is `filled`, a time
@@ -80,7 +80,6 @@ impl<const N: usize> GustMemory<N> {
         filled: f64,
         interval_s: f64,
     ) -> bool {
-        self.age_s += interval_s;
         if filled <= FILLED {
             return false;
         }
@@ -94,9 +93,9 @@ impl<const N: usize> GustMemory<N> {
 
     /// Whether a flight can have been in this state: saved states may come from anywhere.
     pub(crate) fn is_possible(&self, prior: &Prior<N>) -> bool {
-        let Self { estimate, surprise, most_missed_m_s2, age_s, gone_s } = self;
+        let Self { estimate, surprise, most_missed_m_s2, since_us: _, gone_s } = self;
         let Surprise { jump_m_s2, thrust_m_s2, steady_thrust_m_s2 } = surprise;
-        let numbers = [jump_m_s2, thrust_m_s2, steady_thrust_m_s2, most_missed_m_s2, age_s, gone_s];
+        let numbers = [jump_m_s2, thrust_m_s2, steady_thrust_m_s2, most_missed_m_s2, gone_s];
         estimate.is_possible(prior) && numbers.iter().all(|number| number.is_finite() && **number >= 0.0)
     }
 }

@@ -116,7 +116,7 @@ pub(crate) struct MassAndDrag {
     gusts_m_s2: f64,
     /// How many surprises there were of late: each counts for less as time goes by.
     surprises: f64,
-    /// What was known before the latest surprise, as long as that may be a gust.
+    /// What was known before the first of the surprises of late, as long as they may be a gust.
     before: Option<GustMemory<UNKNOWNS>>,
 }
 
@@ -155,7 +155,7 @@ impl MassAndDrag {
 
     /// Moments of inertia for a learned mass as a share of those that are configured. The mass does not tell them: a model that
     /// is wrong is so in both, a load near the centre only in the mass. Torques for too little inertia cost the attitude its
-    /// damping, for somewhat too much they do not: they are believed to grow with the mass up to twice, and never to shrink below those of the airframe.
+    /// damping, for somewhat too much they do not: they are believed to grow with the mass up to twice, and to shrink with it only as far as those of the airframe.
     fn inertia_share(&self, configuration: &Configuration) -> f64 {
         let believed = configuration.controllers.mass_factor;
         (self.mass_factor() / believed).clamp(1.0 / believed.max(1.0), MOST_INERTIA_SHARE)
@@ -280,7 +280,8 @@ impl MassAndDrag {
             };
             // Thrust that keeps changing shows a mass that is wrong.
             if self.unsteady_thrust_m_s2 < STEADY_SHARE * along_m_s2 {
-                self.before.get_or_insert(GustMemory::new(self.estimate, surprise));
+                let since_us = self.latest_us.unwrap_or_default();
+                self.before.get_or_insert(GustMemory::new(self.estimate, surprise, since_us));
             }
             // What the filter remembers is of before. Drag does not jump.
             self.estimate.open(prior, &learned_from(&Shown { mass: true, drag: [false; 3] }));
@@ -316,18 +317,20 @@ impl MassAndDrag {
 
     /// Goes back to what was known before a surprise that has ended: it was a gust, and no mass.
     fn watch_for_an_end(&mut self, along: &Unknowns, terms: &Terms, interval_s: f64) {
-        let Some(before) = &mut self.before else { return };
+        let (Some(before), Some(now_us)) = (&mut self.before, self.latest_us) else { return };
         let thrust_m_s2 = terms.thrust_m_s2 / terms.filled;
         let missed_m_s2 = before.estimate().innovation(along, terms.specific_force_m_s2.z) / terms.filled;
         let has_ended = before.has_ended((missed_m_s2, thrust_m_s2), terms.filled, interval_s);
         let known = *before;
-        if has_ended {
+        // What was known long ago is no better: other things have been learned since.
+        let is_old = now_us.saturating_sub(known.since_us()) as f64 > 1e6 * GUSTY_S;
+        if has_ended && !is_old {
             self.estimate = *known.estimate();
             self.steady_force_m_s2 = self.force_m_s2();
             let swing_m_s2 = known.most_missed_m_s2() / GUST_SWINGS;
             self.gusts_m_s2 = self.gusts_m_s2.max(swing_m_s2).min(MOST_FORCE_M_S2);
         }
-        if has_ended || known.age_s() > GUSTY_S {
+        if has_ended || is_old {
             self.before = None;
         }
     }
@@ -379,6 +382,9 @@ impl MassAndDrag {
             && (0.0..=SETTLING_S).contains(&self.settling_s)
             && (0.0..=MOST_FORCE_M_S2).contains(&self.gusts_m_s2)
             && (0.0..=MOST_SURPRISES + 1.0).contains(&self.surprises)
+            && [self.steady_thrust_m_s2, self.unsteady_thrust_m_s2]
+                .iter()
+                .all(|thrust| thrust.is_finite() && *thrust >= 0.0)
             && self.before.is_none_or(|before| before.is_possible(&prior(configuration)))
     }
 }

@@ -114,9 +114,11 @@ impl Terms {
         self.filled += (others.filled - self.filled) * share;
     }
 
-    /// Whether all of them are finite.
+    /// Whether all of them are finite, and some of the filter is filled.
     pub(crate) fn is_finite(&self) -> bool {
-        self.thrust_m_s2.is_finite()
+        self.filled > 0.0
+            && self.filled.is_finite()
+            && self.thrust_m_s2.is_finite()
             && are_finite(self.specific_force_m_s2.as_slice())
             && are_finite(self.acceleration_m_s2.as_slice())
             && are_finite(self.velocity_m_s.as_slice())

@@ -43,7 +43,7 @@ impl Vehicle {
         }
     }
 
-    /// Whether nobody has asked for anything since a long tick has begun.
+    /// Whether nobody has asked for another flight since a long tick has begun. What else was asked for waits for its end.
     pub(super) fn goes_on(&self, tick: &BegunTick) -> bool {
         self.is_left_alone()
             && (tick.armed, tick.mode) == (self.is_armed(), self.mode())
@@ -98,6 +98,7 @@ impl Vehicle {
         is_to_stay
             && outputs.setpoint.velocity_m_s.norm() == 0.0
             && outputs.setpoint.acceleration_m_s2.norm() == 0.0
+            && outputs.setpoint.yaw_rate_rad_s == 0.0
             && outputs.velocity_m_s.norm() < SLOW_M_S
             && outputs.body_rate_rad_s.norm() < SLOW_RAD_S
     }
