@@ -15,12 +15,16 @@ pub(crate) const TRANSLATION_SAMPLE_S: f64 = 0.05;
 
 /// The same instants in slower samples: between sparse ones a limit is not kept. Faster samples keep their numbers.
 pub(crate) fn in_time(samples: &[usize], sample_time_s: f64) -> Vec<usize> {
-    let share = (TRANSLATION_SAMPLE_S / sample_time_s).min(1.0);
-    let slower = |sample: usize| libm::round(sample as f64 * share) as usize;
-    // What is measured now cannot be chosen.
-    let mut slower: Vec<usize> = samples.iter().map(|sample| slower(*sample).max((*sample).min(1))).collect();
+    let mut slower: Vec<usize> = samples.iter().map(|sample| one_in_time(*sample, sample_time_s)).collect();
     slower.dedup();
     slower
+}
+
+/// The same of one of them.
+pub(crate) fn one_in_time(sample: usize, sample_time_s: f64) -> usize {
+    let share = (TRANSLATION_SAMPLE_S / sample_time_s).min(1.0);
+    // What is measured now cannot be chosen.
+    (libm::round(sample as f64 * share) as usize).max(sample.min(1))
 }
 
 #[cfg(test)]

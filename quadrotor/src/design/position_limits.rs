@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use lmpc::SignalLimit;
 use nalgebra::Vector2;
 
-use crate::design::limited_samples::in_time;
+use crate::design::limited_samples::{in_time, one_in_time};
 use crate::{ControllerKind, GRAVITY_M_S2, Limits};
 
 /// Sides of the polygons about circles of tilt and speed: their corners lie 0.86 % outside.
@@ -95,7 +95,7 @@ pub(crate) fn position_limits(sample_time_s: f64, first_moving: usize) -> [Signa
 /// its own: with another mass than it believes in, or rotors that slow down more slowly, it swings. One that was limited later still would
 /// first speed up, and cruise above the limit. A plan of free moves has no such gain.
 pub(crate) fn first_moving(kind: ControllerKind, attitude_delay_s: f64, sample_time_s: f64) -> usize {
-    let earliest = in_time(&[FIRST_MOVING], sample_time_s).first().copied().unwrap_or(FIRST_MOVING);
+    let earliest = one_in_time(FIRST_MOVING, sample_time_s);
     if kind == ControllerKind::StateSpaceMpc {
         return earliest;
     }
@@ -107,12 +107,10 @@ pub(crate) fn first_moving(kind: ControllerKind, attitude_delay_s: f64, sample_t
 
 /// Samples of the speed from the first one on.
 fn moving(first: usize, sample_time_s: f64) -> Vec<usize> {
-    let in_time = |sample: usize| in_time(&[sample], sample_time_s).first().copied().unwrap_or(sample);
-    let second = (first + in_time(MOVING_ON)).max(in_time(SECOND_MOVING));
-    let mut samples = alloc::vec![first, second];
-    samples.extend(MOVING.iter().map(|sample| in_time(*sample)).filter(|sample| *sample > second));
-    samples.dedup();
-    samples
+    let one = |sample: usize| one_in_time(sample, sample_time_s);
+    let second = (first + one(MOVING_ON)).max(one(SECOND_MOVING));
+    let later = in_time(MOVING, sample_time_s).into_iter().filter(|sample| *sample > second);
+    [first, second].into_iter().chain(later).collect()
 }
 
 /// How the tilt is accelerated whatever is commanded now. A plan that would have to prevent it could only fail, give way at all of its

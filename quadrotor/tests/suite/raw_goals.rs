@@ -217,14 +217,7 @@ fn drag_is_foreseen() {
 /// where state-space MPC did not, and the gust passed for up to half of the mass.
 #[test]
 fn a_cruise_stays_calm_whatever_the_model_misses() {
-    let presets = [
-        AirframePreset::Paper,
-        AirframePreset::Crazyflie,
-        AirframePreset::Hummingbird,
-        AirframePreset::Iris,
-        AirframePreset::Heavy,
-    ];
-    for preset in presets {
+    for preset in AirframePreset::ALL {
         let airframe = preset.airframe();
         for (gust_share, learning, mass_factor, fall_time_ratio) in [
             (0.5, true, 1.0, 1.0),

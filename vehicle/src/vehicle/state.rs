@@ -22,7 +22,7 @@ mod takeoff_requests;
 use nalgebra::{Vector2, Vector3};
 use quadrotor::ConfigurationError;
 
-use self::long_tick::BegunTick;
+use self::long_tick::LongTick;
 use super::battery::{capacity_ah, full_voltage_v};
 use super::closed_loop::{ClosedLoop, Conditions};
 use super::decided::Decided;
@@ -51,7 +51,7 @@ pub struct Vehicle {
     decided: Decided,
     machines: Machines,
     /// The long tick that is being flown.
-    tick: Option<BegunTick>,
+    tick: Option<LongTick>,
     /// How long the latest tick has lasted, s.
     lasted_s: f64,
 }
@@ -132,32 +132,33 @@ impl Vehicle {
     /// [`FlightError`]: the flight cannot go on.
     pub fn fly(&mut self, most: u64) -> Result<u64, FlightError> {
         let now_us = self.time_us();
-        let begun = self.tick.take();
-        let (tick, goes_on) = match begun {
-            Some(tick) if self.goes_on(&tick) => (tick, true),
-            Some(tick) => {
-                self.end_tick(&tick);
-                (self.begin_tick(), false)
-            }
-            None => (self.begin_tick(), false),
-        };
-        let time_us = tick.end_us.min(now_us.saturating_add(most.max(1).saturating_mul(TICK_US)));
+        let ended = self.tick.as_ref().filter(|tick| !self.goes_on(tick)).map(|tick| tick.begun_us);
+        if let Some(begun_us) = ended {
+            self.tick = None;
+            self.end_tick(begun_us);
+        }
+        let goes_on = self.tick.is_some();
+        if !goes_on {
+            self.begin_tick();
+        }
+        let (begun_us, end_us) =
+            self.tick.as_ref().map_or((now_us, now_us + TICK_US), |tick| (tick.begun_us, tick.end_us));
+        let time_us = end_us.min(now_us.saturating_add(most.max(1).saturating_mul(TICK_US)));
         if goes_on {
             self.closed_loop.go_on(time_us)?;
         } else {
             self.advance(time_us - now_us)?;
         }
         self.perceive();
-        if time_us < tick.end_us {
-            self.tick = Some(tick);
-        } else {
-            self.end_tick(&tick);
+        if time_us == end_us {
+            self.tick = None;
+            self.end_tick(begun_us);
         }
         Ok((time_us - now_us) / TICK_US)
     }
 
     /// Decides how it is flown from now on.
-    fn begin_tick(&mut self) -> BegunTick {
+    fn begin_tick(&mut self) {
         if self.machines.autostart.is_pending() {
             self.autostart();
         }
@@ -169,12 +170,12 @@ impl Vehicle {
         if self.machines.motor_tests.is_running() {
             self.consult(|parts, situation, proposal| parts.motor_tests.step(situation, proposal));
         }
-        self.begun_tick()
+        self.tick = self.long_tick();
     }
 
-    /// Looks at where a tick has led to.
-    fn end_tick(&mut self, tick: &BegunTick) {
-        self.lasted_s = tick.lasted_s(self.time_us());
+    /// Looks at where a tick has led to that began at a time, µs.
+    fn end_tick(&mut self, begun_us: u64) {
+        self.lasted_s = (self.time_us() - begun_us) as f64 / 1e6;
         self.discharge();
         self.look_back();
         self.step_equipment();

@@ -9,6 +9,7 @@ use crate::control::learning::gust_memory::{GustMemory, Surprise};
 use crate::control::learning::motion_equation::{
     MEMORY_S, MeasuredMotion, MotionEquation, Sampled, Terms, noise_of_positions, noise_of_velocities,
 };
+use crate::control::learning::steady_thrust::SteadyThrust;
 use crate::{Configuration, GRAVITY_M_S2, Sensors, wrench_of_rotors};
 
 /// Learned: μ, the airframe's mass over the learned one; κ, drag per mass along north, east and down, 1/s; d, the
@@ -106,10 +107,8 @@ pub(crate) struct MassAndDrag {
     latest_us: Option<u64>,
     /// Force per mass beside thrust and drag, averaged over seconds, NED, m/s².
     steady_force_m_s2: Vector3<f64>,
-    /// Thrust per mass, averaged likewise, m/s².
-    steady_thrust_m_s2: f64,
-    /// How far the thrust per mass mostly is from that, m/s².
-    unsteady_thrust_m_s2: f64,
+    /// Thrust per mass of these seconds.
+    thrust: SteadyThrust,
     /// Time in which there is no surprise, s.
     settling_s: f64,
     /// How much forces from outside change, m/s², by those across the thrust: no mass does that.
@@ -129,8 +128,7 @@ impl MassAndDrag {
             estimate: BoundedEstimate::new(&prior(configuration), &believed(configuration)),
             latest_us: None,
             steady_force_m_s2: Vector3::zeros(),
-            steady_thrust_m_s2: GRAVITY_M_S2,
-            unsteady_thrust_m_s2: 0.0,
+            thrust: SteadyThrust::new(),
             settling_s: SETTLING_S,
             gusts_m_s2: 0.0,
             surprises: 0.0,
@@ -155,7 +153,8 @@ impl MassAndDrag {
 
     /// Moments of inertia for a learned mass as a share of those that are configured. The mass does not tell them: a model that
     /// is wrong is so in both, a load near the centre only in the mass. Torques for too little inertia cost the attitude its
-    /// damping, for somewhat too much they do not: they are believed to grow with the mass up to twice, and to shrink with it only as far as those of the airframe.
+    /// damping, for somewhat too much they do not: they are believed to grow with the mass up to twice, and to shrink with it only as
+    /// far as those of the airframe.
     fn inertia_share(&self, configuration: &Configuration) -> f64 {
         let believed = configuration.controllers.mass_factor;
         (self.mass_factor() / believed).clamp(1.0 / believed.max(1.0), MOST_INERTIA_SHARE)
@@ -275,11 +274,11 @@ impl MassAndDrag {
         if is_surprised && self.surprises <= MOST_SURPRISES {
             let surprise = Surprise {
                 jump_m_s2: along_m_s2,
-                thrust_m_s2: terms.thrust_m_s2 / terms.filled,
-                steady_thrust_m_s2: self.steady_thrust_m_s2,
+                thrust_m_s2: terms.present_thrust_m_s2(),
+                steady_thrust_m_s2: self.thrust.mean_m_s2(),
             };
             // Thrust that keeps changing shows a mass that is wrong.
-            if self.unsteady_thrust_m_s2 < STEADY_SHARE * along_m_s2 {
+            if self.thrust.deviation_m_s2() < STEADY_SHARE * along_m_s2 {
                 let since_us = self.latest_us.unwrap_or_default();
                 self.before.get_or_insert(GustMemory::new(self.estimate, surprise, since_us));
             }
@@ -306,33 +305,25 @@ impl MassAndDrag {
         for ((row, force_m_s2), deviation) in rows.iter().zip(&terms.specific_force_m_s2).zip(deviations) {
             self.estimate.update(prior, &learned, row, (*force_m_s2, deviation * deviation * repeated));
         }
-        let share = if self.settling_s > 0.0 { 1.0 } else { -libm::expm1(-interval_s / STEADY_FORCE_S) };
-        self.steady_force_m_s2 += (self.force_m_s2() - self.steady_force_m_s2) * share;
-        let thrust_m_s2 = terms.thrust_m_s2 / terms.filled;
-        let unsteady_m_s2 = libm::fabs(thrust_m_s2 - self.steady_thrust_m_s2);
         let slow = -libm::expm1(-interval_s / STEADY_FORCE_S);
-        self.unsteady_thrust_m_s2 += (unsteady_m_s2 - self.unsteady_thrust_m_s2) * slow;
-        self.steady_thrust_m_s2 += (thrust_m_s2 - self.steady_thrust_m_s2) * slow;
+        let share = if self.settling_s > 0.0 { 1.0 } else { slow };
+        self.steady_force_m_s2 += (self.force_m_s2() - self.steady_force_m_s2) * share;
+        self.thrust.see(terms.present_thrust_m_s2(), slow);
     }
 
     /// Goes back to what was known before a surprise that has ended: it was a gust, and no mass.
     fn watch_for_an_end(&mut self, along: &Unknowns, terms: &Terms, interval_s: f64) {
         let (Some(before), Some(now_us)) = (&mut self.before, self.latest_us) else { return };
-        let thrust_m_s2 = terms.thrust_m_s2 / terms.filled;
         let missed_m_s2 = before.estimate().innovation(along, terms.specific_force_m_s2.z) / terms.filled;
-        let has_ended = before.has_ended((missed_m_s2, thrust_m_s2), terms.filled, interval_s);
-        let known = *before;
+        let seen = (missed_m_s2, terms.present_thrust_m_s2());
+        let has_ended = before.has_ended(seen, terms.filled, interval_s);
         // What was known long ago is no better: other things have been learned since.
-        let is_old = now_us.saturating_sub(known.since_us()) as f64 > 1e6 * GUSTY_S;
-        if has_ended && !is_old {
-            self.estimate = *known.estimate();
-            self.steady_force_m_s2 = self.force_m_s2();
-            let swing_m_s2 = known.most_missed_m_s2() / GUST_SWINGS;
-            self.gusts_m_s2 = self.gusts_m_s2.max(swing_m_s2).min(MOST_FORCE_M_S2);
-        }
-        if has_ended || is_old {
-            self.before = None;
-        }
+        let is_old = now_us.saturating_sub(before.since_us()) as f64 > 1e6 * GUSTY_S;
+        let Some(known) = self.before.take_if(|_| has_ended || is_old).filter(|_| !is_old) else { return };
+        self.estimate = *known.estimate();
+        self.steady_force_m_s2 = self.force_m_s2();
+        let swing_m_s2 = known.most_missed_m_s2() / GUST_SWINGS;
+        self.gusts_m_s2 = self.gusts_m_s2.max(swing_m_s2).min(MOST_FORCE_M_S2);
     }
 
     /// Deviation of the equation along the thrust, m/s²: a gust across the thrust comes with one along it, which would pass for mass.
@@ -382,9 +373,7 @@ impl MassAndDrag {
             && (0.0..=SETTLING_S).contains(&self.settling_s)
             && (0.0..=MOST_FORCE_M_S2).contains(&self.gusts_m_s2)
             && (0.0..=MOST_SURPRISES + 1.0).contains(&self.surprises)
-            && [self.steady_thrust_m_s2, self.unsteady_thrust_m_s2]
-                .iter()
-                .all(|thrust| thrust.is_finite() && *thrust >= 0.0)
+            && self.thrust.is_possible()
             && self.before.is_none_or(|before| before.is_possible(&prior(configuration)))
     }
 }

@@ -5,3 +5,4 @@ pub(crate) mod excitation;
 pub(crate) mod gust_memory;
 pub(crate) mod mass_and_drag;
 pub(crate) mod motion_equation;
+pub(crate) mod steady_thrust;

@@ -114,6 +114,11 @@ impl Terms {
         self.filled += (others.filled - self.filled) * share;
     }
 
+    /// The thrust per mass, m/s², however far the filter is filled.
+    pub(crate) fn present_thrust_m_s2(&self) -> f64 {
+        self.thrust_m_s2 / self.filled
+    }
+
     /// Whether all of them are finite, and some of the filter is filled.
     pub(crate) fn is_finite(&self) -> bool {
         self.filled > 0.0

@@ -1,7 +1,6 @@
 //! Ticks that last longer: nothing happens to a vehicle that hovers by itself or stands disarmed, so it is looked at less often.
 
 use super::super::steering::Steering;
-use super::super::tick::TICK_US;
 use super::super::weathervane::IntoWind;
 use super::Vehicle;
 use crate::mode::Mode;
@@ -12,39 +11,31 @@ const GRID_US: u64 = 5_000;
 const SLOW_M_S: f64 = 0.5;
 const SLOW_RAD_S: f64 = 0.5;
 
-/// A tick that has begun.
+/// A long tick that has begun.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct BegunTick {
-    begun_us: u64,
+pub(super) struct LongTick {
+    pub begun_us: u64,
     pub end_us: u64,
     armed: bool,
     mode: Mode,
     steering: Steering,
 }
 
-impl BegunTick {
-    /// How long it has lasted at a time, µs, in s.
-    pub fn lasted_s(&self, time_us: u64) -> f64 {
-        (time_us - self.begun_us) as f64 / 1e6
-    }
-}
-
 impl Vehicle {
-    /// The tick that begins now, in which all machines have been shown how things are: a long one if the vehicle rests by itself.
-    pub(super) fn begun_tick(&self) -> BegunTick {
+    /// The long tick that begins now, when all machines have been shown how things are, if the vehicle rests by itself.
+    pub(super) fn long_tick(&self) -> Option<LongTick> {
         let now_us = self.time_us();
-        let long = self.is_left_alone() && self.rests();
-        BegunTick {
+        (self.is_left_alone() && self.rests()).then(|| LongTick {
             begun_us: now_us,
-            end_us: if long { now_us - now_us % GRID_US + GRID_US } else { now_us + TICK_US },
+            end_us: now_us - now_us % GRID_US + GRID_US,
             armed: self.is_armed(),
             mode: self.mode(),
             steering: *self.decided.steering(),
-        }
+        })
     }
 
     /// Whether nobody has asked for another flight since a long tick has begun. What else was asked for waits for its end.
-    pub(super) fn goes_on(&self, tick: &BegunTick) -> bool {
+    pub(super) fn goes_on(&self, tick: &LongTick) -> bool {
         self.is_left_alone()
             && (tick.armed, tick.mode) == (self.is_armed(), self.mode())
             && tick.steering == *self.decided.steering()
