@@ -85,7 +85,7 @@ struct Family {
     change: fn(&mut Draw, &mut Plan),
 }
 
-const FAMILIES: [Family; 16] = [
+const FAMILIES: [Family; 17] = [
     Family { name: "goal", change: goal },
     Family { name: "wind", change: wind },
     Family { name: "low-tilt", change: low_tilt },
@@ -94,6 +94,7 @@ const FAMILIES: [Family; 16] = [
     Family { name: "path", change: |draw, plan| path(draw, plan, (1.0, 8.0), (0.4, 1.2), &LEVEL) },
     Family { name: "upright", change: |draw, plan| path(draw, plan, (0.5, 6.0), (0.5, 2.5), &CLIMBING) },
     Family { name: "small", change: |draw, plan| path(draw, plan, (0.1, 1.0), (1.5, 4.5), &ALL) },
+    Family { name: "wide", change: wide },
     Family { name: "points", change: points },
     Family { name: "rounded", change: rounded },
     Family { name: "jumps", change: jumps },
@@ -148,6 +149,13 @@ fn path(draw: &mut Draw, plan: &mut Plan, size_m: (f64, f64), rate_rad_s: (f64, 
     };
     plan.configuration.initial.position_m = path.derivative(0.0, 0).into();
     (plan.demand, plan.duration_s) = (Demand::Path(path), 30.0);
+}
+
+/// Paths under limits that are wider than what most of the airframes can fly.
+fn wide(draw: &mut Draw, plan: &mut Plan) {
+    path(draw, plan, (0.5, 10.0), (0.7, 3.5), &ALL);
+    let limits = &mut plan.configuration.limits;
+    (limits.tilt_rad, limits.speed_horizontal_m_s) = (draw.between(0.7, 1.1), 20.0);
 }
 
 fn points(draw: &mut Draw, plan: &mut Plan) {

@@ -15,6 +15,10 @@ const DAMPING: f64 = 0.7;
 const YIELDING_1_S: f64 = 0.25;
 /// A reference that has been within the limits for so long, µs, is one to return to: the controllers do that as fast as the limits allow.
 const RELEASED_US: u64 = 2_000_000;
+/// Share of the largest lean below which a reference leaves them the room for that, and how near to it, m and m/s, the way needs none: without
+/// room, feedback that has more than that to close swings ever farther.
+const ROOMY: f64 = 0.8;
+const NEAR: f64 = 0.15;
 
 /// How the way that is followed differs from its reference.
 ///
@@ -43,7 +47,7 @@ struct Offset {
     jerk_m_s3: Vector3<f64>,
     /// When it had these values, µs.
     time_us: u64,
-    /// When the reference was beyond the limits last, µs.
+    /// When the reference was beyond the limits last, or left no room to return to it, µs.
     beyond_us: u64,
     /// Whether it has been beyond the thrust: otherwise only the horizontal motion gives way, also to a vehicle that stands on the ground
     /// and is to go down.
@@ -65,13 +69,13 @@ impl FollowedWay {
     ) -> Option<PositionReference> {
         let whole = RequiredThrust::whole(configuration, reference);
         let is_beyond_thrust = whole.is_beyond_thrust(configuration);
-        let is_beyond = is_beyond_thrust || whole.is_beyond_lean(configuration);
+        let is_beyond = is_beyond_thrust || !whole.leans_at_most(configuration, 1.0);
         let mut offset = match self.offset {
             None if is_beyond => Offset::none(time_us),
             None => return None,
             Some(offset) => offset.after(time_us, reference, body),
         };
-        if is_beyond {
+        if is_beyond || !(offset.is_near() || whole.leans_at_most(configuration, ROOMY)) {
             offset.beyond_us = time_us;
             offset.gives_height |= is_beyond_thrust;
         }
@@ -156,6 +160,10 @@ impl Offset {
         }
     }
 
+    fn is_near(&self) -> bool {
+        self.position_m.norm().max(self.velocity_m_s.norm()) < NEAR
+    }
+
     fn is_finite(&self) -> bool {
         (self.position_m + self.velocity_m_s).iter().all(|value| value.is_finite())
     }
@@ -238,10 +246,11 @@ mod tests {
     fn a_reference_within_the_limits_is_followed_itself() {
         let configuration = Configuration::default();
         let mut way = FollowedWay::default();
-        let slow = |time_us: u64| PositionReference {
-            acceleration_m_s2: circle(time_us).acceleration_m_s2 * 0.6,
+        let slower = |share: f64, time_us: u64| PositionReference {
+            acceleration_m_s2: circle(time_us).acceleration_m_s2 * share,
             ..circle(time_us)
         };
+        let slow = |time_us: u64| slower(0.5, time_us);
         let mut followed = |reference: &PositionReference, time_us: u64| {
             way.follow(&configuration, (reference, &on(reference)), time_us)
         };
@@ -250,6 +259,8 @@ mod tests {
         assert!(followed(&slow(2_000_000), 2_000_000).is_some());
         assert_eq!(followed(&slow(2_020_000), 2_020_000), None);
         assert!(followed(&circle(2_030_000), 2_030_000).is_some());
-        assert_eq!(followed(&PositionReference::goal([1.0, 2.0, 3.0], 0.0), 2_040_000), None);
+        // What leaves no room to return is returned to by the way itself.
+        assert!(followed(&slower(0.65, 4_040_000), 4_040_000).is_some());
+        assert_eq!(followed(&PositionReference::goal([1.0, 2.0, 3.0], 0.0), 4_050_000), None);
     }
 }

@@ -270,7 +270,8 @@ fn foreseen(
     });
     let beside = ASKED[..FADED].iter().filter_map(|sample| asked(*sample));
     let all = ASKED.into_iter().map(ahead).chain(beside).chain([*reference]);
-    let asked = Asked { is_held: reference.is_bent && !reference.is_narrow, ..Asked::default() };
+    let [is_held, is_narrow] = [!reference.is_narrow, reference.is_narrow].map(|so| reference.is_bent && so);
+    let asked = Asked { is_held, is_narrow, ..Asked::default() };
     (moved, all.fold(asked, |most, then| asked_by(&most, &then)))
 }
 
@@ -293,7 +294,7 @@ fn asked_by(asked: &Asked, reference: &ReferenceMotion<2>) -> Asked {
         speed_m_s: asked.speed_m_s.max(reference.velocity.norm()),
         jerk_m_s3: asked.jerk_m_s3.max(reference.thrust_jerk.norm()),
         snap_m_s4: asked.snap_m_s4.max(reference.thrust_snap.norm()),
-        is_held: asked.is_held,
+        ..*asked
     }
 }
 

@@ -4,7 +4,7 @@ use nalgebra::{Vector2, Vector3};
 
 use crate::control::cascade::{most_horizontal, surely_horizontal, vertical_range};
 use crate::design::controller_limits::{LEAST_HORIZONTAL_M_S2, holding_horizontal_m_s2, reference_tilt_rad};
-use crate::{Configuration, GRAVITY_M_S2, PositionReference};
+use crate::{Configuration, GRAVITY_M_S2, Limits, PositionReference};
 
 /// A horizontal acceleration of less, m/s², has no direction: what it turns with would have no bounds.
 const NOTHING_M_S2: f64 = 1e-6;
@@ -35,11 +35,12 @@ impl RequiredThrust {
         !(up..=down).contains(&self.acceleration_m_s2.z)
     }
 
-    /// Whether it leans farther than can be followed.
-    pub(crate) fn is_beyond_lean(&self, configuration: &Configuration) -> bool {
+    /// Whether it leans at most by a share of what can be followed.
+    pub(crate) fn leans_at_most(&self, configuration: &Configuration, share: f64) -> bool {
         let horizontal_m_s2 = self.acceleration_m_s2.xy().norm();
         let lean_rad = reference_tilt_rad(configuration);
-        horizontal_m_s2 > NOTHING_M_S2 && horizontal_m_s2 > self.most_horizontal_m_s2(configuration, lean_rad)
+        horizontal_m_s2 <= NOTHING_M_S2
+            || horizontal_m_s2 <= share * self.most_horizontal_m_s2(configuration, lean_rad)
     }
 
     /// a + D v and its derivatives.
@@ -71,7 +72,7 @@ impl RequiredThrust {
         }
         within.leaning_at_most(
             || within.most_horizontal_m_s2(configuration, lean_rad),
-            |most_m_s2| within.motion_of_most(most_m_s2, lean_rad),
+            |most_m_s2| within.motion_of_most(configuration, most_m_s2, lean_rad),
         )
     }
 
@@ -112,8 +113,9 @@ impl RequiredThrust {
     /// m² = s² − w²,  m m′ = −w w′,  m m″ = −w w″ − w′² − m′²         as far as the thrust s does
     /// ```
     ///
-    /// The least that is commanded however weak the rotors are does not change.
-    fn motion_of_most(&self, m: f64, lean_rad: f64) -> [f64; 2] {
+    /// The least that is commanded however weak the rotors are does not change. Near it the circle of the thrust is steep: no lean follows
+    /// faster than its limits allow.
+    fn motion_of_most(&self, configuration: &Configuration, m: f64, lean_rad: f64) -> [f64; 2] {
         if m == most_horizontal(self.acceleration_m_s2.z, lean_rad) {
             return self.motion_of_leaning(m);
         }
@@ -122,7 +124,10 @@ impl RequiredThrust {
         }
         let [w, w_rate, w_bend] = self.carrying();
         let rate = -w * w_rate / m;
-        [rate, -(w * w_bend + w_rate * w_rate + rate * rate) / m]
+        let bend = -(w * w_bend + w_rate * w_rate + rate * rate) / m;
+        let Limits { tilt_rate_rad_s, tilt_acceleration_rad_s2, .. } = configuration.limits;
+        let within = |value: f64, limit: f64| value.clamp(-GRAVITY_M_S2 * limit, GRAVITY_M_S2 * limit);
+        [within(rate, tilt_rate_rad_s), within(bend, tilt_acceleration_rad_s2)]
     }
 
     /// The two derivatives of a horizontal acceleration m beside which the lean stays the same: those of w m/w.
@@ -194,7 +199,7 @@ pub(crate) mod tests {
 
     use super::RequiredThrust;
     use crate::guidance::known_motion::motion;
-    use crate::{Configuration, PositionReference, commanded_tilt_rad};
+    use crate::{AirframePreset, Configuration, GRAVITY_M_S2, Limits, PositionReference, commanded_tilt_rad};
 
     /// A spiral whose acceleration grows and turns, with its derivatives by the product rule in the complex plane: b e^{ct}. Its vertical
     /// part is `climb` times as large.
@@ -291,6 +296,32 @@ pub(crate) mod tests {
         assert!((now - 4.0 / (crate::GRAVITY_M_S2 - 1.5)).abs() < 1e-12, "{now}");
         assert!(((after - before) / (2.0 * STEP_S)).abs() < 1e-4, "{before} {after}");
         assert!(((after - 2.0 * now + before) / (STEP_S * STEP_S)).abs() < 1e-3, "{before} {now} {after}");
+    }
+
+    /// The rotors of an Iris give 14.8 m/s². Where a climb takes nearly all of that, what is left for a lean goes to nothing like a root: its
+    /// derivatives are those of a lean that turns as fast as its limits allow.
+    #[test]
+    fn what_is_left_beside_a_climb_turns_within_the_limits_of_the_tilt() {
+        let configuration = Configuration::for_airframe(&AirframePreset::Iris.airframe()).unwrap();
+        let Limits { tilt_rate_rad_s, tilt_acceleration_rad_s2, .. } = configuration.limits;
+        for climb_m_s2 in [4.7, 4.8, 4.9, 4.93] {
+            let reference = PositionReference {
+                acceleration_m_s2: Vector3::new(8.0, 0.0, -climb_m_s2),
+                jerk_m_s3: Vector3::new(0.0, 0.0, -8.0),
+                snap_m_s4: Vector3::new(0.0, 0.0, 140.0),
+                ..PositionReference::goal([0.0; 3], 0.0)
+            };
+            let required = RequiredThrust::of(&configuration, &reference, 1.2);
+            assert!(required.acceleration_m_s2.x < 4.0, "{climb_m_s2}: {required:?}");
+            assert!(
+                required.jerk_m_s3.x.abs() <= GRAVITY_M_S2 * tilt_rate_rad_s,
+                "{climb_m_s2}: {required:?}"
+            );
+            assert!(
+                required.snap_m_s4.x.abs() <= GRAVITY_M_S2 * tilt_acceleration_rad_s2,
+                "{climb_m_s2}: {required:?}"
+            );
+        }
     }
 
     /// Within the lean a reference requires what it asks for and its drag; beyond, the largest lean in the same direction.

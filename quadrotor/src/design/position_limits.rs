@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use lmpc::SignalLimit;
 use nalgebra::Vector2;
 
+use crate::control::narrowed_way::FOLLOWED;
 use crate::design::limited_samples::{in_time, one_in_time};
 use crate::{ControllerKind, GRAVITY_M_S2, Limits};
 
@@ -139,6 +140,8 @@ pub(crate) struct Asked {
     pub(crate) snap_m_s4: f64,
     /// Whether limits bend it, and hardly any of it is left out for that.
     pub(crate) is_held: bool,
+    /// Whether limits bend it although much of it is left out.
+    pub(crate) is_narrow: bool,
 }
 
 /// Values of [`position_limits`], the commanded acceleration being at most `present_m_s2` now and `lasting_m_s2` later on, under what the
@@ -149,8 +152,10 @@ pub(crate) fn position_bounds(
     asked: &Asked,
     under_way: TurnUnderWay,
 ) -> [f64; POSITION_BOUNDS] {
+    // So much of a narrowed way is followed: less would leave feedback none of it.
+    let share = if asked.is_narrow { FOLLOWED } else { 1.0 };
     let [most_m_s3, most_m_s4] =
-        [limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2].map(|limit| GRAVITY_M_S2 * limit);
+        [limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2].map(|limit| share * GRAVITY_M_S2 * limit);
     let turning = with_faster(most_m_s4, asked.snap_m_s4, CATCHING_UP_WITH_FASTER).max(under_way.snap_m_s4)
         + ANSWER_1_S * under_way.jump_m_s3;
     let share = if asked.is_held { TURNING_BACK } else { CATCHING_UP_WITH_FASTER };
@@ -327,6 +332,17 @@ mod tests {
             assert!((bounds[2 * SIDES] / turning - turned).abs() < 1e-12);
             assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - leant).abs() < 1e-12);
         }
+    }
+
+    /// So much of a narrowed way is followed.
+    #[test]
+    fn a_narrowed_way_may_turn_as_fast_as_it_is_followed() {
+        let limits = Limits::default();
+        let asked = Asked { is_narrow: true, ..Asked::default() };
+        let bounds = position_bounds(&limits, (5.0, 4.0), &asked, TurnUnderWay::default());
+        let turning = bounds[2 * SIDES] / (GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
+        let leaning = bounds[2 * SIDES + COARSE_SIDES] / (GRAVITY_M_S2 * limits.tilt_rate_rad_s);
+        assert!((turning - 1.3).abs() < 1e-12 && (leaning - 1.3).abs() < 1e-12, "{turning} {leaning}");
     }
 
     /// A reference that is faster than the limit may be caught up with.

@@ -59,12 +59,40 @@ impl PositionReference {
     /// a(t) = a cos ωt + j/ω sin ωt,  ω² = −(v·j + a·s)/(v·v + a·a)
     /// ```
     ///
-    /// is exact on circles, and between the rates of both axes on figure-eights. The terms of a snap that is not known are left out. What
-    /// brakes on a line is foreseen to swing back. This is the way alone: the heading of what turns stays that of now.
+    /// is exact on circles, and between the rates of both axes on level figure-eights. What moves up and down turns at a rate of its own. The
+    /// terms of a snap that is not known are left out. What brakes on a line is foreseen to swing back. This is the way alone: the heading
+    /// of what turns stays that of now.
     pub(crate) fn foreseen_after(&self, time_s: f64) -> Self {
         if time_s <= KNOWN_S {
             return self.after(time_s);
         }
+        let (level, upright) = (Vector3::new(1.0, 1.0, 0.0), Vector3::new(0.0, 0.0, 1.0));
+        let [level, upright] = [level, upright].map(|axes| self.along(&axes).turned_after(time_s));
+        let both = |of: fn(&Self) -> Vector3<f64>| of(&level) + of(&upright);
+        Self {
+            position_m: both(|way| way.position_m),
+            velocity_m_s: both(|way| way.velocity_m_s),
+            acceleration_m_s2: both(|way| way.acceleration_m_s2),
+            jerk_m_s3: both(|way| way.jerk_m_s3),
+            snap_m_s4: both(|way| way.snap_m_s4),
+            ..level
+        }
+    }
+
+    /// Its motion along some axes alone.
+    fn along(&self, axes: &Vector3<f64>) -> Self {
+        Self {
+            position_m: self.position_m.component_mul(axes),
+            velocity_m_s: self.velocity_m_s.component_mul(axes),
+            acceleration_m_s2: self.acceleration_m_s2.component_mul(axes),
+            jerk_m_s3: self.jerk_m_s3.component_mul(axes),
+            snap_m_s4: self.snap_m_s4.component_mul(axes),
+            ..*self
+        }
+    }
+
+    /// The same of a motion that turns at one rate, if it turns.
+    fn turned_after(&self, time_s: f64) -> Self {
         let Some(turning_1_s2) = self.turning_1_s2() else { return self.expected_after(time_s) };
         let (t, rate) = (time_s, libm::sqrt(turning_1_s2));
         let (sine, cosine) = libm::sincos(rate * t);
@@ -165,6 +193,26 @@ mod tests {
                     assert!((found - then).norm() < 1e-9, "{time_s}");
                 }
             }
+        }
+    }
+
+    /// Up and down twice for once there and back, with a different rate of each.
+    #[test]
+    fn an_upright_figure_eight_is_foreseen_as_one() {
+        let eight = |time_s: f64| {
+            known_motion::motion(|order| {
+                let along = |size_m: f64, rate_rad_s: f64| {
+                    let angle = rate_rad_s * time_s + f64::from(order) * core::f64::consts::FRAC_PI_2;
+                    size_m * rate_rad_s.powi(order) * libm::sin(angle)
+                };
+                Vector3::new(along(0.8, 1.5), along(-0.4, 1.5), along(0.3, 3.0))
+            })
+        };
+        for (now_s, time_s) in [(0.1, 0.5), (0.7, 1.0), (2.0, 5.5)] {
+            let (found, then) = (eight(now_s).foreseen_after(time_s), eight(now_s + time_s));
+            let off_m = (found.position_m - then.position_m).norm();
+            let off_m_s2 = (found.acceleration_m_s2 - then.acceleration_m_s2).norm();
+            assert!(off_m < 1e-9 && off_m_s2 < 1e-9, "{now_s} + {time_s}: {off_m} m, {off_m_s2} m/s²");
         }
     }
 
