@@ -124,6 +124,15 @@ impl Autopilot {
         }
     }
 
+    /// Until when it need not be flown on, µs, because the vehicle [rests](Vehicle::rests_until_us) and no service waits for a time of its own:
+    /// it does not matter when that is flown, if it is before anything is handed in. Regular messages that are due meanwhile leave later.
+    pub fn rests_until_us(&self) -> Option<u64> {
+        let Context { vehicle, reboot_us, quiet_until_us, .. } = &self.context;
+        let is_asked =
+            reboot_us.is_some() || *quiet_until_us <= vehicle.time_us() || self.services.are_busy();
+        vehicle.rests_until_us().filter(|_| !is_asked).map(|end_us| self.before_us + end_us)
+    }
+
     #[cfg(test)]
     pub(crate) fn context_mut(&mut self) -> &mut Context {
         &mut self.context
@@ -249,6 +258,11 @@ impl Autopilot {
     /// the flight. Call it after received messages and from time to time, even if `turns` is zero.
     pub fn transfer(&mut self, turns: usize, has_room: impl Fn(PeerId) -> Option<bool>) {
         self.services.transfer(&mut self.context, turns, &has_room);
+    }
+
+    /// Whether a long answer is under way, so that [`Self::transfer`] has something to go on with.
+    pub fn is_answering(&self) -> bool {
+        self.services.are_answering()
     }
 
     /// Tells everyone what has happened around the vehicle. It changes nothing of the flight.

@@ -59,7 +59,7 @@ impl Session {
         let Self { settings, mut fleet, mut page } = self;
         let start = Instant::now();
         fly(&settings, &mut fleet, page.as_mut(), start, stop);
-        let (members, incomplete) = fleet.finish();
+        let (members, incomplete) = fleet.finish(Instant::now());
         let flights = members
             .iter()
             .map(|member| Flight {
@@ -90,7 +90,7 @@ fn fly(
     let several = clocks.len() as u32;
     while !stop.load(Ordering::Relaxed) && !clocks.iter().all(|clock| clock.is_over(fleet)) {
         fleet.receive(Instant::now());
-        fleet.hear_radios();
+        fleet.hear_radios(Instant::now());
         // Answers do not wait for the flight.
         fleet.flush();
         let now = Instant::now();
@@ -111,7 +111,10 @@ fn fly(
         if let Some(page) = &mut page {
             page.show(fleet, &clocks, now);
         }
-        panel.update(now, fleet.time_us(), |form| of_fleet(fleet, form));
+        panel.update(now, fleet.time_us(), |form| {
+            fleet.catch_up_all(now);
+            of_fleet(fleet, form)
+        });
         if !behind {
             std::thread::sleep(if expected { SHORT_REST } else { REST });
         }

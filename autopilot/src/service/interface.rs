@@ -138,6 +138,11 @@ pub trait Service: Debug + Send {
         context.rests = true;
     }
 
+    /// Whether a long answer is under way, be it that others work on it. Otherwise it does not matter when [`Self::transfer`] is called next.
+    fn is_answering(&self) -> bool {
+        false
+    }
+
     /// Goes on with long answers: sends as many messages as this service allows itself in `turns` turns, about 2500 of which make a
     /// second of the wall clock, to peers whose link has room (`None`: the peer is gone), one peer after the other.
     fn transfer(&mut self, context: &mut Context, _turns: usize, _has_room: &dyn Fn(PeerId) -> Option<bool>) {

@@ -90,6 +90,10 @@ impl Service for LogStreams {
         }
     }
 
+    fn is_answering(&self) -> bool {
+        self.receiver.is_some()
+    }
+
     fn transfer(&mut self, context: &mut Context, turns: usize, has_room: &dyn Fn(PeerId) -> Option<bool>) {
         let Some(receiver) = &mut self.receiver else { return };
         receiver.turns += turns;

@@ -94,6 +94,10 @@ impl Service for ParameterProtocol {
         storage(context, command).map(|()| Progress::Done)
     }
 
+    fn is_answering(&self) -> bool {
+        !self.lists.is_empty()
+    }
+
     fn transfer(&mut self, context: &mut Context, turns: usize, has_room: &dyn Fn(PeerId) -> Option<bool>) {
         self.lists.retain(|peer, _| has_room(*peer).is_some());
         for _ in 0..turns {

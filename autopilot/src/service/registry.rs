@@ -229,6 +229,12 @@ impl Registry {
         self.streaming.call(&mut self.services, context, |service, context| service.stream(context));
     }
 
+    /// Whether a long answer of one of them is under way.
+    pub fn are_answering(&self) -> bool {
+        let mut transferring = self.transferring.0.iter().filter_map(|index| self.services.get(*index));
+        transferring.any(|service| service.is_answering())
+    }
+
     /// Goes on with long answers.
     pub fn transfer(
         &mut self,

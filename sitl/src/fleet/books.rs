@@ -90,10 +90,19 @@ impl Books {
         }
     }
 
+    /// Whether [`Self::keep_up`] writes down now how things are.
+    pub fn are_due(&self, now: Instant) -> bool {
+        self.recorder.is_some() && self.is_time(now)
+    }
+
+    fn is_time(&self, now: Instant) -> bool {
+        now.saturating_duration_since(self.written) >= WRITE_PERIOD
+    }
+
     /// Writes what waits, each second of the wall clock. Returns what to announce.
     pub fn keep_up(&mut self, members: &[Member], now: Instant) -> Vec<Notice> {
         let mut notices = Vec::new();
-        if now.saturating_duration_since(self.written) < WRITE_PERIOD {
+        if !self.is_time(now) {
             return notices;
         }
         self.written = now;

@@ -71,6 +71,9 @@ impl Clock {
     /// behind after that.
     pub fn advance(&mut self, fleet: &mut Fleet, now: Instant, clocks: u32) -> bool {
         self.agree_on_speed(fleet, now);
+        if !self.is_patient() {
+            self.members.clone().for_each(|number| fleet.catch_up(number, now));
+        }
         let limit_us = fleet.limit_us(self.members.clone());
         let (goal_us, longest) = match self.pace.goal_us(self.speed, now, self.time_us) {
             None => (limit_us, BURST),
@@ -79,18 +82,20 @@ impl Clock {
             }
             Some(goal_us) => (goal_us.min(limit_us), 4 * BURST),
         };
-        self.fly_to(fleet, goal_us, longest / clocks.max(1))
+        self.fly_to(fleet, goal_us, longest / clocks.max(1), now)
     }
 
     /// A new speed of one vehicle is that of all, and told by all.
     fn agree_on_speed(&mut self, fleet: &mut Fleet, now: Instant) {
         let speeds = self.members.clone().filter_map(|number| fleet.members().get(number));
+        // Whoever rests behind its clock has been told nothing.
+        let speeds = speeds.filter(|member| !member.is_behind());
         let mut news = speeds.map(|member| member.autopilot().speed()).filter(|speed| *speed != self.speed);
         let Some(speed) = news.next() else { return };
         // A step is of the pause in which it was asked for.
         (self.speed, self.step_to_us) = (speed, 0);
         for number in self.members.clone() {
-            let Some(member) = fleet.member_mut(number) else { continue };
+            let Some(member) = fleet.attend(number, now) else { continue };
             if member.autopilot.speed() != speed {
                 member.autopilot.set_speed(speed);
                 fleet.send(number, now);
@@ -99,7 +104,7 @@ impl Clock {
     }
 
     /// Flies on to a time, µs, but hardly longer than a time of the wall clock. Whether it is not there yet.
-    fn fly_to(&mut self, fleet: &mut Fleet, goal_us: u64, longest: Duration) -> bool {
+    fn fly_to(&mut self, fleet: &mut Fleet, goal_us: u64, longest: Duration, now: Instant) -> bool {
         let start = Instant::now();
         let mut flushed = Duration::ZERO;
         loop {
@@ -109,8 +114,10 @@ impl Clock {
             if ticks == 0 {
                 return false;
             }
-            fleet.fly(self.members.clone(), ticks, start);
+            let begun_us = self.time_us;
             self.time_us += ticks * TICK_US;
+            let patient = self.is_patient() && !self.has_ended();
+            fleet.fly(self.members.clone(), begun_us..self.time_us, patient, now);
             let elapsed = start.elapsed();
             if elapsed >= longest {
                 return true;
@@ -120,6 +127,12 @@ impl Clock {
                 flushed = elapsed;
             }
         }
+    }
+
+    /// Whether those that rest may be a few milliseconds of simulation time behind it: hardly more of the wall clock, for their messages
+    /// leave that much later. As fast as possible, they fly that far at once.
+    fn is_patient(&self) -> bool {
+        matches!(self.speed, Speed::Factor(factor) if factor >= 1.0)
     }
 
     /// Ticks to a time, µs, or to the end.

@@ -5,10 +5,11 @@ use std::time::{Duration, Instant};
 
 use autopilot::Autopilot;
 use autopilot::codec::Frame;
+use autopilot::envelope::PeerId;
 use autopilot::file_work::FileWorker;
 use vehicle::foreign::ForeignModel;
 use vehicle::parameters::{FileFormat, Speed};
-use vehicle::{FlightError, Mode, Vehicle};
+use vehicle::{FlightError, Mode, TICK_US, Vehicle};
 
 use super::kept_file::KeptFile;
 use super::lockstep::{Circumstances, Lockstep, LockstepSettings};
@@ -27,6 +28,8 @@ const HEARTBEAT: Duration = Duration::from_millis(1_100);
 const TURNS_PER_S: f64 = 2_500.0;
 /// Of one look at the links.
 const MOST_TURNS: u64 = 50;
+/// Whoever has no long answer to give is asked this often all the same: it hears who is gone.
+const SELDOM: Duration = Duration::from_millis(50);
 
 /// A vehicle, what is known of its flight, and where it is reached.
 #[derive(Debug)]
@@ -50,6 +53,14 @@ pub struct Member {
     /// Turns so far, and those that are left now.
     turns: u64,
     pub(super) turns_left: u64,
+    /// Simulation time that it has flown to, and where its clock is, µs.
+    time_us: u64,
+    clock_us: u64,
+    /// It rests, and need not follow its clock before this time, µs.
+    rests_until_us: u64,
+    /// Whether a client may wait for a long answer, and when it was asked last.
+    is_answering: bool,
+    asked: Instant,
     /// Why its simulation has ended before the run, if it has.
     loss: Option<Loss>,
     /// What is missing from files that have ended already, a sentence each.
@@ -89,6 +100,11 @@ impl Member {
             started: Instant::now(),
             turns: 0,
             turns_left: 0,
+            time_us: 0,
+            clock_us: 0,
+            rests_until_us: 0,
+            is_answering: true,
+            asked: Instant::now(),
             loss: None,
             lacking: Vec::new(),
         })
@@ -147,7 +163,55 @@ impl Member {
 
     /// Its simulation time, µs: it goes on over reboots.
     pub fn time_us(&self) -> u64 {
-        self.autopilot.time_us()
+        self.time_us
+    }
+
+    /// Simulation time by its clock, µs. One that rests may be behind it.
+    pub(super) fn clock_us(&self) -> u64 {
+        self.clock_us
+    }
+
+    /// Its clock has come to a time, µs. Whether it has to fly there now: `patient` lets it rest behind.
+    pub(super) fn hear_clock(&mut self, clock_us: u64, patient: bool) -> bool {
+        self.clock_us = clock_us;
+        !patient || clock_us >= self.rests_until_us
+    }
+
+    /// Whether it rests behind its clock.
+    pub(super) fn is_behind(&self) -> bool {
+        self.time_us < self.clock_us
+    }
+
+    /// Ticks that it is behind its clock.
+    pub(super) fn ticks_behind(&self) -> u64 {
+        self.clock_us.saturating_sub(self.time_us) / TICK_US
+    }
+
+    /// It may rest behind its clock from now on, as long as it rests by itself and nobody waits for it. Logs want to see each tick.
+    pub(super) fn rest(&mut self) {
+        let is_awaited = self.is_answering || self.lockstep.is_some() || self.log.is_some();
+        let end_us = if is_awaited { None } else { self.autopilot.rests_until_us() };
+        self.rests_until_us = end_us.unwrap_or(0);
+    }
+
+    /// Something is asked of it: it follows its clock with the next tick, and there may be a long answer.
+    pub(super) fn wake(&mut self) {
+        (self.rests_until_us, self.is_answering) = (0, true);
+    }
+
+    /// Whether it is time to ask it for long answers. Nobody waits for one of who rests behind its clock.
+    pub(super) fn is_asked(&self, now: Instant) -> bool {
+        let is_time = self.is_answering || now.saturating_duration_since(self.asked) >= SELDOM;
+        is_time && !self.is_behind()
+    }
+
+    /// Goes on with long answers as [`Autopilot::transfer`] does, for a turn at most. Whether it had one.
+    pub(super) fn transfer(&mut self, now: Instant, has_room: impl Fn(PeerId) -> Option<bool>) -> bool {
+        let turns = self.turns_left.min(1);
+        self.turns_left -= turns;
+        self.autopilot.transfer(turns as usize, has_room);
+        (self.is_answering, self.asked) = (self.autopilot.is_answering(), now);
+        turns > 0
     }
 
     /// Digest of its flight so far.
@@ -155,25 +219,26 @@ impl Member {
         self.digest
     }
 
-    /// One tick on, or up to `most` at once while it hovers and nothing happens to it. Returns how many.
+    /// One tick on, or up to `most` at once while it hovers and nothing happens to it.
     ///
     /// # Errors
     /// [`FlightError`]: the flight cannot go on; its time is still that of the last good tick.
-    pub(super) fn fly(&mut self, most: u64, now: Instant) -> Result<u64, FlightError> {
+    pub(super) fn fly(&mut self, most: u64, now: Instant) -> Result<(), FlightError> {
         set_simulation_time(self.time_us());
         let boots = self.autopilot.boots();
         // Logs may want to see each tick.
-        let flown = self.autopilot.fly(if self.log.is_some() { 1 } else { most })?;
+        self.autopilot.fly(if self.log.is_some() { 1 } else { most })?;
         if self.autopilot.boots() != boots {
             // The vehicle that has booted knows of nobody.
             self.ground_station = None;
         }
+        self.time_us = self.autopilot.time_us();
         self.digest.update(self.autopilot.vehicle());
         self.streamed.tick(&mut self.autopilot);
         if let Some(log) = &mut self.log {
             log.tick(&mut self.autopilot, now);
         }
-        Ok(flown)
+        Ok(())
     }
 
     /// Why its simulation has ended before the run, if it has.
@@ -189,6 +254,7 @@ impl Member {
         }
         self.lacking = self.finish();
         (self.loss, self.lockstep, self.ground_station) = (Some(loss), None, None);
+        self.clock_us = self.time_us;
     }
 
     /// Takes in who is there.
@@ -201,8 +267,8 @@ impl Member {
 
     /// Whether a ground station is heard, if the vehicle does not know that yet.
     pub(super) fn ground_station_news(&mut self, now: Instant) -> Option<bool> {
-        let timeout_s = self.autopilot.vehicle().conduct().failsafe.ground_station_timeout_s;
         let (last, told) = self.ground_station.as_mut()?;
+        let timeout_s = self.autopilot.vehicle().conduct().failsafe.ground_station_timeout_s;
         let heard = now.saturating_duration_since(*last).as_secs_f64() <= timeout_s;
         (std::mem::replace(told, heard) != heard).then_some(heard)
     }
@@ -236,8 +302,8 @@ impl Member {
 
     /// Whether its links would look dead, because simulation time is slow.
     pub(super) fn is_silent(&self, now: Instant) -> bool {
-        let slow = self.lockstep.is_some() || !matches!(self.autopilot.speed(), Speed::Max);
-        slow && now.saturating_duration_since(self.last_heartbeat) > HEARTBEAT
+        let slow = || self.lockstep.is_some() || !matches!(self.autopilot.speed(), Speed::Max);
+        now.saturating_duration_since(self.last_heartbeat) > HEARTBEAT && slow()
     }
 
     /// Writes its plans into their file, if one has changed.

@@ -13,6 +13,7 @@
 mod allocations;
 mod books;
 mod clock;
+mod flight;
 mod held;
 mod kept_file;
 mod lockstep;
@@ -20,6 +21,8 @@ mod loss;
 mod member;
 mod onlooker;
 mod reception;
+#[cfg(test)]
+mod resting;
 mod roster;
 mod signing_keeper;
 

@@ -14,6 +14,7 @@ use std::time::{Duration, Instant};
 use autopilot::codec::target_of;
 use vehicle::Severity;
 
+use super::signing_keeper::present;
 use super::{Fleet, Member};
 use crate::link::{Links, Lost, Received, SetupRules};
 use crate::rarely::Rarely;
@@ -71,8 +72,9 @@ impl Fleet {
                 break;
             }
         }
+        let timestamp = present();
         for hub in 0..hubs {
-            self.keep_signing(hub, now);
+            self.keep_signing(hub, now, timestamp);
         }
         self.tell_lost(now);
         let mut idle = 0;
@@ -80,7 +82,7 @@ impl Fleet {
             let hub = self.reception.served;
             self.reception.served = (hub + 1) % hubs;
             idle = if self.serve(hub, now, start + BUDGET) { 0 } else { idle + 1 };
-            if start.elapsed() >= BUDGET {
+            if idle == 0 && start.elapsed() >= BUDGET {
                 break;
             }
         }
@@ -88,6 +90,11 @@ impl Fleet {
 
     /// Turns of the peers of a hub, for a share of the time. Whether there was anything to do.
     fn serve(&mut self, hub: usize, now: Instant, end: Instant) -> bool {
+        // Clocks are looked at only where there is something to do: there may be hundreds of hubs.
+        let is_idle = !self.keeps_step && self.hubs.get_mut(hub).is_none_or(|links| links.are_idle(now));
+        if is_idle {
+            return false;
+        }
         let end = end.min(Instant::now() + SHARE);
         let mut served = false;
         loop {
@@ -113,7 +120,7 @@ impl Fleet {
         });
         let Some(turn) = turn else { return false };
         // What signing must remember is kept before what it has accepted takes effect.
-        self.keep_signing(hub, now);
+        self.keep_signing(hub, now, present());
         if let Some(received) = &turn.received {
             self.distribute(hub, received, now);
         }
@@ -124,24 +131,31 @@ impl Fleet {
     }
 
     /// A message reaches the vehicles behind a hub that it is for.
-    fn distribute(&mut self, hub: usize, received: &Received, now: Instant) {
+    pub(super) fn distribute(&mut self, hub: usize, received: &Received, now: Instant) {
         self.books.keep_size(&self.members);
         let target = target_of(&received.frame).system;
-        let mut logged = false;
+        let is_behind_hub = |member: &&Member| member.hub == hub && member.loss().is_none();
+        let takes = |member: &&Member| {
+            is_behind_hub(member) && (target == 0 || target == member.autopilot.system_id())
+        };
+        // What they have to say up to now comes first, in the log, too.
         for number in 0..self.members.len() {
-            let heard = |member: &&mut Member| member.hub == hub && member.loss().is_none();
-            let Some(member) = self.members.get_mut(number).filter(heard) else { continue };
-            let time_us = member.time_us();
-            set_simulation_time(time_us);
-            if !std::mem::replace(&mut logged, true) {
-                self.books.traffic(time_us, &received.frame);
+            if self.members.get(number).filter(takes).is_some() {
+                self.catch_up(number, now);
             }
-            if target == 0 || target == member.autopilot.system_id() {
-                member.hear(&received.frame, now);
-                match &mut member.lockstep {
-                    Some(lockstep) => lockstep.put(received.clone()),
-                    None => self.take_in(number, received, now),
-                }
+        }
+        let Some(first) = self.members.iter().find(is_behind_hub) else { return };
+        self.books.traffic(first.clock_us(), &received.frame);
+        for number in 0..self.members.len() {
+            if self.members.get(number).filter(takes).is_none() {
+                continue;
+            }
+            let Some(member) = self.members.get_mut(number) else { continue };
+            set_simulation_time(member.time_us());
+            member.hear(&received.frame, now);
+            match &mut member.lockstep {
+                Some(lockstep) => lockstep.put(received.clone()),
+                None => self.take_in(number, received, now),
             }
         }
     }
@@ -149,7 +163,7 @@ impl Fleet {
     /// A message that lock-step has held takes effect on a vehicle of a hub for which it is time. Whether there was one.
     fn release(&mut self, hub: usize, now: Instant) -> bool {
         let start = Instant::now();
-        let members = self.members.len();
+        let members = if self.keeps_step { self.members.len() } else { 0 };
         for offset in 0..members {
             let number = (self.reception.released + offset) % members;
             let Some(member) = self.members.get_mut(number).filter(|member| member.hub == hub) else {
@@ -169,19 +183,20 @@ impl Fleet {
 
     /// A message takes effect on a vehicle.
     pub(super) fn take_in(&mut self, number: usize, received: &Received, now: Instant) {
-        let Some(member) = self.members.get_mut(number) else { return };
-        self.books.received(number, member.time_us(), received);
+        let Some(member) = self.attend(number, now) else { return };
+        let time_us = member.time_us();
         member.autopilot.receive(&received.origin, &received.frame);
+        self.books.received(number, time_us, received);
         self.send(number, now);
     }
 
     /// Keeps what has changed about signing at a hub before it takes effect, and tells it to those behind it. A key is
     /// the same everywhere.
-    fn keep_signing(&mut self, hub: usize, now: Instant) {
+    fn keep_signing(&mut self, hub: usize, now: Instant, timestamp: u64) {
         let (Some(links), Some(keeper)) = (self.hubs.get_mut(hub), self.signing.get_mut(hub)) else {
             return;
         };
-        let said = keeper.update(links, now);
+        let said = keeper.update(links, now, timestamp);
         if said.new_key {
             let key = links.signing().key().cloned();
             self.hubs.iter_mut().for_each(|links| links.signing().set_key(key.clone()));
@@ -210,9 +225,10 @@ impl Fleet {
     /// Tells something to all behind a hub.
     fn announce(&mut self, hub: usize, severity: Severity, text: &str, now: Instant) {
         for number in 0..self.members.len() {
-            let Some(member) = self.members.get_mut(number).filter(|member| member.hub == hub) else {
+            if self.members.get(number).is_none_or(|member| member.hub != hub) {
                 continue;
-            };
+            }
+            let Some(member) = self.attend(number, now) else { continue };
             member.autopilot.announce(severity, text);
             self.send(number, now);
         }

@@ -3,9 +3,8 @@
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
-use autopilot::COMPONENT;
-use autopilot::codec::{Frame, Version, id};
-use autopilot::envelope::{Destination, Origin, Outgoing, PeerId};
+use autopilot::codec::id;
+use autopilot::envelope::{Destination, Outgoing};
 use vehicle::Severity;
 use vehicle::foreign::ForeignModel;
 
@@ -21,7 +20,7 @@ use crate::failure::Failure;
 use crate::files::{Disk, FileLock, FileThread, LogFolder, plans_beside};
 use crate::flight_log::FlightLog;
 use crate::fmu::FlownFmu;
-use crate::link::{Links, Received};
+use crate::link::Links;
 use crate::radio_port::RadioPort;
 use crate::record::Participant;
 
@@ -43,7 +42,9 @@ pub struct Fleet {
     /// Does the work of clients on files.
     _files: FileThread,
     /// Whether the vehicles see one another as traffic.
-    shares_traffic: bool,
+    pub(super) shares_traffic: bool,
+    /// Whether there is lock-step.
+    pub(super) keeps_step: bool,
     /// The vehicle whose long answers go on next.
     next_transfer: usize,
     /// The key's files are those of this process.
@@ -103,6 +104,7 @@ impl Fleet {
             hubs,
             _files: files,
             shares_traffic: settings.fleet_traffic,
+            keeps_step: settings.lockstep.is_some(),
             next_transfer: 0,
             _key_lock: key_lock,
         })
@@ -113,9 +115,9 @@ impl Fleet {
         &self.members
     }
 
-    /// Simulation time of the vehicle that is furthest, µs.
+    /// Simulation time by the clock that is furthest, µs.
     pub fn time_us(&self) -> u64 {
-        self.members.iter().map(Member::time_us).max().unwrap_or(0)
+        self.members.iter().map(Member::clock_us).max().unwrap_or(0)
     }
 
     /// The links.
@@ -134,7 +136,8 @@ impl Fleet {
     /// expected at any moment.
     pub(crate) fn keep_in_step(&mut self, now: Instant) -> bool {
         let mut expected = false;
-        for number in 0..self.members.len() {
+        let members = if self.keeps_step { self.members.len() } else { 0 };
+        for number in 0..members {
             let Some(member) = self.members.get_mut(number) else { continue };
             let circumstances = member.circumstances();
             let Some(lockstep) = &mut member.lockstep else { continue };
@@ -166,66 +169,6 @@ impl Fleet {
             self.send(number, now);
         }
         expected
-    }
-
-    /// Some ticks of some vehicles: of one after the other, so that its state stays in the caches of the processor. Those that see one
-    /// another fly tick by tick.
-    pub(super) fn fly(&mut self, members: Range<usize>, ticks: u64, now: Instant) {
-        let (rounds, at_once) = if self.shares_traffic { (ticks, 1) } else { (1, ticks) };
-        for _ in 0..rounds {
-            for number in members.clone() {
-                let mut flown = 0;
-                while flown < at_once {
-                    flown += self.fly_member(number, at_once - flown, now);
-                }
-            }
-        }
-    }
-
-    /// A tick of one vehicle, or up to `most` at once where nothing happens in between. Returns how many: all if its simulation has ended.
-    pub(super) fn fly_member(&mut self, number: usize, most: u64, now: Instant) -> u64 {
-        let flying = |member: &&mut Member| member.loss().is_none();
-        let Some(member) = self.members.get_mut(number).filter(flying) else { return most };
-        let begun_us = member.time_us();
-        match member.fly(most, now) {
-            Ok(flown) => {
-                if let Some(motion) = member.autopilot.vehicle().foreign_motion() {
-                    self.books.motion(number, begun_us, motion);
-                    self.books.keep_size(&self.members);
-                }
-                self.send(number, now);
-                self.share_traffic(number, now);
-                flown
-            }
-            Err(error) => {
-                self.lose(number, error, now);
-                most
-            }
-        }
-    }
-
-    /// Once a second the others hear the transponder of a vehicle, as if it had been received: records hold it.
-    fn share_traffic(&mut self, number: usize, now: Instant) {
-        const PERIOD_US: u64 = 1_000_000;
-        let Some(member) = self.members.get(number).filter(|_| self.shares_traffic) else { return };
-        if !member.time_us().is_multiple_of(PERIOD_US) {
-            return;
-        }
-        let system = member.autopilot.system_id();
-        let sequence = (member.time_us() / PERIOD_US) as u8;
-        let report = member.autopilot.transponder_report();
-        let Some(frame) = Frame::encode(&report, Version::Two, sequence, (system, COMPONENT)) else { return };
-        let peer = PeerId { link: 0, number: u64::MAX };
-        let received = Received { origin: Origin { peer, system, component: COMPONENT }, frame };
-        for other in (0..self.members.len()).filter(|other| *other != number) {
-            if self.members.get(other).is_some_and(|member| member.loss().is_none()) {
-                self.take_in(other, &received, now);
-            }
-        }
-    }
-
-    pub(super) fn member_mut(&mut self, number: usize) -> Option<&mut Member> {
-        self.members.get_mut(number)
     }
 
     /// Sends what a vehicle has to say. A changed parameter is in the file before anybody hears of it.
@@ -262,23 +205,29 @@ impl Fleet {
     }
 
     /// Hands what the pilots' radios send on to their vehicles.
-    pub(crate) fn hear_radios(&mut self) {
-        for (number, member) in self.members.iter_mut().enumerate() {
-            let Some(pulses) = member.radio.as_mut().and_then(RadioPort::news) else { continue };
-            if member.loss().is_none() {
-                self.books.radio(number, member.time_us(), &pulses);
+    pub(crate) fn hear_radios(&mut self, now: Instant) {
+        for number in 0..self.members.len() {
+            let radio = self.members.get_mut(number).and_then(|member| member.radio.as_mut());
+            let Some(pulses) = radio.and_then(RadioPort::news) else { continue };
+            if let Some(member) = self.attend(number, now) {
+                let time_us = member.time_us();
                 member.autopilot.receive_radio(pulses);
+                self.books.radio(number, time_us, &pulses);
             }
         }
     }
 
-    /// Heartbeats where simulation time is too slow for them.
+    /// Heartbeats where simulation time is too slow for them, and who is heard no more. Whoever rests behind its clock is looked at when it
+    /// has flown there.
     pub(crate) fn keep_links_alive(&mut self, now: Instant) {
         for number in 0..self.members.len() {
-            let Some(member) = self.members.get_mut(number) else { continue };
+            let Some(member) = self.members.get_mut(number).filter(|member| !member.is_behind()) else {
+                continue;
+            };
             if let Some(heard) = member.ground_station_news(now) {
                 self.books.ground_station(number, member.time_us(), heard);
                 member.autopilot.hear_ground_station(heard);
+                member.wake();
             }
             if member.is_silent(now) {
                 member.autopilot.keep_alive();
@@ -289,9 +238,12 @@ impl Fleet {
 
     /// What is logged reaches the disk.
     pub(crate) fn keep_logs(&mut self, now: Instant) {
+        if self.books.are_due(now) {
+            self.catch_up_all(now);
+        }
         for (severity, text) in self.books.keep_up(&self.members, now) {
             for number in 0..self.members.len() {
-                let Some(member) = self.members.get_mut(number) else { continue };
+                let Some(member) = self.attend(number, now) else { continue };
                 member.autopilot.announce(severity, &text);
                 self.send(number, now);
             }
@@ -304,17 +256,18 @@ impl Fleet {
         let start = Instant::now();
         self.members.iter_mut().for_each(|member| member.count_turns(now));
         let mut idle = 0;
-        // Whoever has nothing to send is asked once, too: it hears who is gone, and takes in what the disk has answered.
+        // Whoever has nothing to send is asked once, too, if it is time: it hears who is gone, and takes in what the disk has answered.
         while idle < self.members.len() {
             let number = self.next_transfer % self.members.len();
             self.next_transfer = number + 1;
             let (Some(member), hubs) = (self.members.get_mut(number), &self.hubs) else { return };
-            let turns = member.turns_left.min(1);
-            let hub = member.hub;
-            let has_room = |peer| hubs.get(hub).and_then(|links| links.has_room(peer));
-            member.autopilot.transfer(turns as usize, has_room);
-            member.turns_left -= turns;
-            idle = if self.send(number, now) && turns > 0 { 0 } else { idle + 1 };
+            if !member.is_asked(now) {
+                idle += 1;
+                continue;
+            }
+            let links = hubs.get(member.hub);
+            let had_turn = member.transfer(now, |peer| links.and_then(|links| links.has_room(peer)));
+            idle = if self.send(number, now) && had_turn { 0 } else { idle + 1 };
             if start.elapsed() > LONGEST_TRANSFER {
                 return;
             }
@@ -329,7 +282,9 @@ impl Fleet {
     }
 
     /// Ends the files. Returns the vehicles as they are, and what is missing from the files, a sentence each.
-    pub(crate) fn finish(mut self) -> (Vec<Member>, Vec<String>) {
+    pub(crate) fn finish(mut self, now: Instant) -> (Vec<Member>, Vec<String>) {
+        self.catch_up_all(now);
+        self.flush();
         let mut lacking: Vec<String> = self.members.iter_mut().flat_map(Member::finish).collect();
         for (keeper, links) in self.signing.iter_mut().zip(&mut self.hubs) {
             lacking.append(&mut keeper.finish(links));

@@ -74,9 +74,9 @@ impl SigningKeeper {
     }
 
     /// Keeps what has changed, before it takes effect, and returns what is to be said. What cannot be written is tried again each
-    /// second; meanwhile signing goes on, and only a restart could forget which frames have come.
-    pub fn update(&mut self, links: &mut Links, now: Instant) -> Said {
-        links.signing().set_clock(present());
+    /// second; meanwhile signing goes on, and only a restart could forget which frames have come. `timestamp` is that of the present.
+    pub fn update(&mut self, links: &mut Links, now: Instant, timestamp: u64) -> Said {
+        links.signing().set_clock(timestamp);
         let setups = links.take_setups();
         let new_key = setups.iter().any(SigningSetup::is_change);
         let mut lines: Vec<_> = setups
@@ -114,7 +114,7 @@ impl SigningKeeper {
 }
 
 /// The timestamp of the present, by the machine's clock as it is set now: it may be corrected while vehicles fly.
-fn present() -> u64 {
+pub fn present() -> u64 {
     timestamp(SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_micros() as u64)
 }
 

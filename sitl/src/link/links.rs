@@ -211,6 +211,19 @@ impl Links {
         }
     }
 
+    /// Whether nothing waits to be handled. Then nobody has had more than was left by others.
+    pub fn are_idle(&mut self, now: Instant) -> bool {
+        let is_idle = |inbox: &Inbox| inbox.waiting(now).is_none();
+        let idle = self
+            .links
+            .iter()
+            .all(|link| is_idle(&link.strangers) && link.peers.values().all(|peer| is_idle(&peer.inbox)));
+        if idle {
+            self.turns.next(std::iter::empty());
+        }
+        idle
+    }
+
     /// Handles a bounded part of what waits in the inboxes: a frame at most. `None`: nothing waits of those who may have a
     /// turn. What the turn has cost, with all that it led to, is the caller's to charge.
     pub fn take_turn(&mut self, now: Instant, may: impl Fn(PeerId) -> bool) -> Option<Turn> {

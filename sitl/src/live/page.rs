@@ -70,6 +70,7 @@ impl LivePage {
             self.frames = 0;
             return;
         }
+        fleet.catch_up_all(now);
         if self.frames.is_multiple_of(RARELY) {
             let autopilots = fleet.members().iter().map(Member::autopilot);
             if let Some(scene) = self.scene.changed(autopilots) {
@@ -134,6 +135,7 @@ impl LivePage {
                 Err("pause first: time can be stepped only while it is paused".to_owned())
             };
         }
+        fleet.catch_up(number, now);
         let member = fleet.members().get(number).ok_or("no such vehicle")?;
         let request = Request::of(action, member.autopilot())?;
         // What was said before is no answer.

@@ -37,6 +37,11 @@ pub struct Pending {
 }
 
 impl Pending {
+    /// Whether there are any.
+    pub fn are_there(&self) -> bool {
+        !self.all.is_empty()
+    }
+
     /// Whether a request is being worked on, or its answer is on its way. It is answered where it was asked last.
     pub fn is_known(&mut self, origin: &Origin, request: &Request) -> bool {
         let client = client_of(origin);

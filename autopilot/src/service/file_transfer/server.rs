@@ -81,6 +81,10 @@ impl Service for FileServer {
         }
     }
 
+    fn is_answering(&self) -> bool {
+        self.pending.are_there()
+    }
+
     fn transfer(&mut self, context: &mut Context, turns: usize, has_room: &dyn Fn(PeerId) -> Option<bool>) {
         while let Ok(Answer { number, replies }) = self.answers.try_recv() {
             self.pending.answer(number, replies);

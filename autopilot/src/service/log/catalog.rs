@@ -36,6 +36,11 @@ impl Catalog {
         self.known && !self.logs.is_empty()
     }
 
+    /// Whether a peer waits for it, or for the rest of it.
+    pub fn is_wanted(&self) -> bool {
+        !(self.waiting.is_empty() && self.sending.is_empty())
+    }
+
     /// The log at a place.
     pub fn get(&self, place: usize) -> Option<&Listed> {
         self.logs.get(place)

@@ -95,6 +95,11 @@ impl Downloads {
         });
     }
 
+    /// Whether there is one.
+    pub fn are_under_way(&self) -> bool {
+        !self.all.is_empty()
+    }
+
     /// Ends the download of a peer.
     pub fn end(&mut self, peer: PeerId) {
         self.all.retain(|download| download.peer != peer);

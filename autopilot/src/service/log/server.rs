@@ -62,6 +62,10 @@ impl Service for LogServer {
         }
     }
 
+    fn is_answering(&self) -> bool {
+        self.listing || self.erasing || self.catalog.is_wanted() || self.downloads.are_under_way()
+    }
+
     fn transfer(&mut self, context: &mut Context, turns: usize, has_room: &dyn Fn(PeerId) -> Option<bool>) {
         let first_id = first_id(context);
         self.catalog.retain(|peer| has_room(peer).is_some());

@@ -22,12 +22,25 @@ pub(super) struct LongTick {
 }
 
 impl Vehicle {
+    /// Until when the vehicle rests by itself, µs, as things are: it can fly there at once ([`Self::fly`]). `None`: it does not rest.
+    pub fn rests_until_us(&self) -> Option<u64> {
+        match &self.tick {
+            Some(tick) => self.goes_on(tick).then_some(tick.end_us),
+            None => self.next_end_us(),
+        }
+    }
+
+    /// The end of the long tick that begins now, µs, if the vehicle rests by itself.
+    fn next_end_us(&self) -> Option<u64> {
+        let now_us = self.time_us();
+        (self.is_left_alone() && self.rests()).then_some(now_us - now_us % GRID_US + GRID_US)
+    }
+
     /// The long tick that begins now, when all machines have been shown how things are, if the vehicle rests by itself.
     pub(super) fn long_tick(&self) -> Option<LongTick> {
-        let now_us = self.time_us();
-        (self.is_left_alone() && self.rests()).then(|| LongTick {
-            begun_us: now_us,
-            end_us: now_us - now_us % GRID_US + GRID_US,
+        self.next_end_us().map(|end_us| LongTick {
+            begun_us: self.time_us(),
+            end_us,
             armed: self.is_armed(),
             mode: self.mode(),
             steering: *self.decided.steering(),
