@@ -11,6 +11,7 @@ use vehicle::parameters::Speed;
 const VEHICLE: (u8, u8) = (1, 1);
 const STATION: (u8, u8) = (255, 190);
 const END: u64 = 40_000;
+const AUTOPILOT_VERSION: f32 = 148.0;
 /// ArduCopter's GUIDED.
 const GUIDED: f32 = 4.0;
 
@@ -66,4 +67,36 @@ fn services_act_at_the_same_times_however_many_ticks_are_flown_at_once() {
             );
         }
     }
+}
+
+/// Whoever flies it may let it rest until the end of a long tick, unless something was asked of it or it is about to boot.
+#[test]
+fn it_need_not_be_flown_while_it_rests_and_nothing_is_asked() {
+    let settings = VehicleSettings::new(Identity::ArduPilot);
+    let mut autopilot = Autopilot::new(&settings, VEHICLE.0, Speed::Factor(1.0), &[LinkProfile::Ground], 0)
+        .expect("valid settings");
+    let fly_to = |autopilot: &mut Autopilot, tick: u64| {
+        while autopilot.time_us() < 1000 * tick {
+            autopilot.fly(tick - autopilot.time_us() / 1000).expect("it stands");
+        }
+    };
+    let hand_in = |autopilot: &mut Autopilot, number, param1: f32| {
+        let parameters = [param1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let message: Message = MavMessage::COMMAND_LONG(command_long(VEHICLE, number, parameters)).into();
+        let frame = Frame::encode(&message, Version::Two, 0, STATION).expect("a message of MAVLink 2");
+        let peer = PeerId { link: 0, number: 1 };
+        autopilot.receive(&Origin { peer, system: STATION.0, component: STATION.1 }, &frame);
+    };
+    fly_to(&mut autopilot, 12_001);
+    assert_eq!(autopilot.rests_until_us(), Some(12_005_000));
+    hand_in(&mut autopilot, MavCmd::MAV_CMD_REQUEST_MESSAGE, AUTOPILOT_VERSION);
+    assert_eq!(autopilot.rests_until_us(), None, "an answer may be due");
+    fly_to(&mut autopilot, 12_002);
+    assert_eq!(autopilot.rests_until_us(), Some(12_005_000));
+    hand_in(&mut autopilot, MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0);
+    fly_to(&mut autopilot, 12_003);
+    assert_eq!(autopilot.rests_until_us(), None, "it is about to boot");
+    fly_to(&mut autopilot, 20_002);
+    // Long ticks are counted from the boot.
+    assert_eq!((autopilot.boots(), autopilot.rests_until_us()), (2, Some(20_007_000)));
 }

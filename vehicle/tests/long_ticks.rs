@@ -61,6 +61,11 @@ fn a_hovering_vehicle_flies_five_ticks_at_once() {
         [vehicle.fly(10), vehicle.fly(3), vehicle.fly(10)].map(|flown| flown.expect("it hovers")),
         [5, 3, 2]
     );
+    let now_us = vehicle.time_us();
+    assert_eq!(vehicle.rests_until_us(), Some(now_us + 5_000));
+    vehicle.fly(2).expect("it hovers");
+    assert_eq!(vehicle.rests_until_us(), Some(now_us + 5_000), "within a long tick");
     vehicle.set_mode(Mode::Land).expect("it can land");
+    assert_eq!(vehicle.rests_until_us(), None);
     assert_eq!(vehicle.fly(10).expect("it descends"), 1, "on its way down");
 }
