@@ -145,6 +145,7 @@ pub use configuration::settings::{
 };
 pub use configuration::unit::Unit;
 pub use control::activity::{Activity, ControllerActivity};
+pub use control::belief::Belief;
 pub use control::control_error::ControlError;
 pub use control::control_inputs::{ControlInputs, ControlLaw, ControlSignal, Target};
 pub use control::control_loop::ControlLoop;

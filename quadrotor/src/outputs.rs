@@ -2,7 +2,7 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use crate::{Activity, BatteryOutput, PositionReference};
+use crate::{Activity, BatteryOutput, Belief, PositionReference};
 
 /// The observable state at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +41,8 @@ pub struct Outputs {
     pub yaw_error_rad: f64,
     /// How the controllers came to their last inputs.
     pub activity: Activity,
+    /// What the controllers take the vehicle for.
+    pub belief: Belief,
 }
 
 impl Outputs {

@@ -392,6 +392,7 @@ impl Simulation {
             tracking_error_m: plant.position_m - setpoint.position_m,
             yaw_error_rad: wrapped(plant.attitude_rad.z - setpoint.yaw_rad),
             activity: control.activity(),
+            belief: self.control.belief(),
         }
     }
 

@@ -32,6 +32,20 @@ def test_the_description_names_the_kinds_and_the_outcomes(model_description):
             assert variables[f"controller.{loop}.{figure}"].type == "Integer"
 
 
+def test_learned_mass_and_drag_are_shown(unzipped, model_description):
+    goal = dict(reference__shaping=False, reference__position__x=30.0, controller__mass_factor=0.75)
+    drag = dict(airframe__drag__x=0.3, airframe__drag__y=0.2)
+    result = fly(unzipped, model_description, **goal, **drag)
+    mass_kg = next(float(variable.start) for variable in model_description.modelVariables if variable.name == "airframe.mass")
+    assert result["controller.believed_mass"][0] == pytest.approx(0.75 * mass_kg, rel=1e-12)
+    assert result["controller.believed_mass"][-1] == pytest.approx(mass_kg, rel=0.02)
+    assert result["controller.believed_drag.x"][-1] == pytest.approx(0.3, rel=0.1)
+    configured = fly(unzipped, model_description, **goal, **drag, controller__learning=False)
+    assert np.ptp(configured["controller.believed_mass"]) == np.ptp(configured["controller.believed_drag.y"]) == 0.0
+    assert configured["controller.believed_mass"][0] == pytest.approx(0.75 * mass_kg, rel=1e-12)
+    assert configured["controller.believed_drag.y"][0] == 0.2
+
+
 @pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS)
 @pytest.mark.parametrize("shaping", [True, False], ids=["shaped", "raw"])
 def test_every_kind_flies_to_the_goal(unzipped, model_description, kind, shaping):

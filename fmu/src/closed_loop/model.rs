@@ -41,6 +41,7 @@ impl Model for ClosedLoop {
         &numbers::controllers(),
         &figures::figures(),
         &inputs::GROUND,
+        &outputs::BELIEF,
     ];
     const ARRAYS: &'static [&'static [Array]] = &[
         arrays::REFERENCE,

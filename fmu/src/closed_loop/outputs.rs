@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use fmi::array;
 use fmi::variables::{Array, Variable};
-use quadrotor::{BatteryOutput, Outputs, PositionReference};
+use quadrotor::{BatteryOutput, Belief, Outputs, PositionReference};
 
 use super::ClosedLoop;
 use crate::quantities::{ANGLE, POSITION};
@@ -33,6 +33,9 @@ pub(super) const ERRORS: [Variable<ClosedLoop>; 4] = [
 /// How the controllers came to their last inputs.
 pub(super) const ACTIVITY: [Variable<ClosedLoop>; 12] = steering::activity();
 
+/// What the controllers take the vehicle for.
+pub(super) const BELIEF: [Variable<ClosedLoop>; 4] = steering::belief();
+
 /// Arrays that only the closed loop has.
 pub(super) const ARRAYS: &[Array] =
     &[array!("tracking_error", [".x", ".y", ".z"], "Position minus set-point: north, east, down")];
@@ -55,6 +58,7 @@ pub(super) fn are_finite(outputs: &Outputs) -> bool {
         setpoint,
         tracking_error_m,
         yaw_error_rad,
+        belief: Belief { mass_kg, drag_n_s_m },
         // Whole numbers.
         time_us: _,
         activity: _,
@@ -69,6 +73,7 @@ pub(super) fn are_finite(outputs: &Outputs) -> bool {
         body_rate_rad_s,
         torque_n_m,
         tracking_error_m,
+        drag_n_s_m,
         &setpoint.position_m,
         &setpoint.velocity_m_s,
         &setpoint.acceleration_m_s2,
@@ -81,6 +86,7 @@ pub(super) fn are_finite(outputs: &Outputs) -> bool {
         *current_a,
         *remaining,
         *yaw_error_rad,
+        *mass_kg,
         *yaw_rad,
         *yaw_rate_rad_s,
         *yaw_acceleration_rad_s2,
@@ -105,7 +111,7 @@ mod tests {
         let outputs =
             ClosedLoop::new(&Configuration::default(), &Inputs::default()).expect("flies").outputs();
         assert!(are_finite(&outputs));
-        let places: [fn(&mut Outputs) -> &mut f64; 24] = [
+        let places: [fn(&mut Outputs) -> &mut f64; 26] = [
             |outputs| &mut outputs.position_m.x,
             |outputs| &mut outputs.velocity_m_s.y,
             |outputs| &mut outputs.acceleration_m_s2.z,
@@ -130,6 +136,8 @@ mod tests {
             |outputs| &mut outputs.setpoint.yaw_acceleration_rad_s2,
             |outputs| &mut outputs.tracking_error_m.z,
             |outputs| &mut outputs.yaw_error_rad,
+            |outputs| &mut outputs.belief.mass_kg,
+            |outputs| &mut outputs.belief.drag_n_s_m.y,
         ];
         for (place, number) in places.into_iter().enumerate() {
             for wrong in [f64::NAN, f64::INFINITY] {

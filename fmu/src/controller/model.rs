@@ -6,8 +6,8 @@ use std::borrow::Cow;
 use fmi::variables::{Array, Quantity, Terminal, Variable};
 use fmi::{Identity, Model};
 use quadrotor::{
-    Activity, CascadeDesign, Configuration, ConfigurationError, ControlLoop, ControlState, Measurement,
-    PositionReference, Wrench,
+    Activity, Belief, CascadeDesign, Configuration, ConfigurationError, ControlLoop, ControlState,
+    Measurement, PositionReference, Wrench,
 };
 use serde::{Deserialize, Serialize};
 
@@ -58,6 +58,8 @@ pub struct ControllerOutputs {
     pub setpoint: PositionReference,
     /// How the controllers came to their last inputs.
     pub activity: Activity,
+    /// What the controllers take the vehicle for.
+    pub belief: Belief,
 }
 
 impl Designed for Controller {
@@ -137,6 +139,7 @@ impl Model for Controller {
         &measurement::NUMBERS,
         &figures::figures(),
         &inputs::GROUND,
+        &outputs::BELIEF,
     ];
     const ARRAYS: &'static [&'static [Array]] = &[
         arrays::REFERENCE,
@@ -221,6 +224,7 @@ impl Model for Controller {
             tilt_reference_rad: state.tilt_reference_rad(),
             setpoint: state.reference(self.time_us),
             activity: state.activity(),
+            belief: self.control.belief(),
         }
     }
 

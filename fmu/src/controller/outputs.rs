@@ -4,7 +4,7 @@
 
 use fmi::array;
 use fmi::variables::{Array, Variable};
-use quadrotor::{Activity, PositionReference};
+use quadrotor::{Activity, Belief, PositionReference};
 
 use super::{Controller, ControllerOutputs};
 use crate::quantities::{FORCE, ROTOR_SPEED, TORQUE};
@@ -22,6 +22,10 @@ impl Steered for ControllerOutputs {
 
     fn activity(&self) -> &Activity {
         &self.activity
+    }
+
+    fn belief(&self) -> &Belief {
+        &self.belief
     }
 }
 
@@ -54,6 +58,9 @@ pub(super) const STEERING: [Variable<Controller>; 12] = steering::set_points();
 
 /// How the controllers came to their last inputs.
 pub(super) const ACTIVITY: [Variable<Controller>; 12] = steering::activity();
+
+/// What the controllers take the vehicle for.
+pub(super) const BELIEF: [Variable<Controller>; 4] = steering::belief();
 
 /// What is commanded, as vectors.
 #[rustfmt::skip]

@@ -40,6 +40,7 @@ pub(crate) const STEERING: &[Array] = &[
     array!("setpoint.position", [".x", ".y", ".z"], "Position set-point, after shaping: north, east, down"),
     array!("setpoint.velocity", [".x", ".y", ".z"], "Velocity set-point, after shaping: north, east, down"),
     array!("setpoint.acceleration", [".x", ".y", ".z"], "Acceleration set-point, after shaping: north, east, down"),
+    array!("controller.believed_drag", [".x", ".y", ".z"], "Drag coefficients north, east and down that the controllers go by"),
 ];
 
 /// The airframe as controllers know it.

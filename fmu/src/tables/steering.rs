@@ -2,10 +2,10 @@
 
 use fmi::Model;
 use fmi::variables::{Choice, Variable};
-use quadrotor::{Activity, ControllerActivity, Outputs, PositionReference};
+use quadrotor::{Activity, Belief, ControllerActivity, Outputs, PositionReference};
 
-use super::rows::{count, outcome, output};
-use crate::quantities::{ACCELERATION, ANGLE, POSITION, VELOCITY};
+use super::rows::{at_least, count, outcome, output};
+use crate::quantities::{ACCELERATION, ANGLE, DRAG_COEFFICIENT, MASS, POSITION, VELOCITY};
 
 /// Outputs with those of the controllers among them.
 pub(crate) trait Steered {
@@ -15,6 +15,8 @@ pub(crate) trait Steered {
     fn setpoint(&self) -> &PositionReference;
     /// How the controllers came to their last inputs.
     fn activity(&self) -> &Activity;
+    /// What the controllers take the vehicle for.
+    fn belief(&self) -> &Belief;
 }
 
 impl Steered for Outputs {
@@ -28,6 +30,10 @@ impl Steered for Outputs {
 
     fn activity(&self) -> &Activity {
         &self.activity
+    }
+
+    fn belief(&self) -> &Belief {
+        &self.belief
     }
 }
 
@@ -94,5 +100,18 @@ pub(crate) const fn activity<M: Model<Outputs: Steered>>() -> [Variable<M>; 12] 
         count("controller.altitude.status_number", |outputs: &M::Outputs| number(&outputs.activity().altitude) as u32, "controller.altitude.status as an integer, for importers without enumerations"),
         count("controller.position.status_number", |outputs: &M::Outputs| number(&outputs.activity().position) as u32, "controller.position.status as an integer, for importers without enumerations"),
         count("controller.attitude.status_number", |outputs: &M::Outputs| number(&outputs.activity().attitude) as u32, "controller.attitude.status as an integer, for importers without enumerations"),
+    ]
+}
+
+const MASS_BELIEVED: &[&str] = &["airframe.preset", "airframe.mass", "controller.mass_factor"];
+
+/// What the controllers take the vehicle for.
+#[rustfmt::skip]
+pub(crate) const fn belief<M: Model<Outputs: Steered>>() -> [Variable<M>; 4] {
+    [
+        at_least(output("controller.believed_mass", &MASS, MASS_BELIEVED, |outputs: &M::Outputs| outputs.belief().mass_kg, "Mass that the controllers go by: as learned in flight, or as configured"), 0.0),
+        output("controller.believed_drag.x", &DRAG_COEFFICIENT, &["airframe.preset", "airframe.drag.x"], |outputs: &M::Outputs| outputs.belief().drag_n_s_m.x, "Drag coefficient north that the controllers go by: as learned in flight, or as configured"),
+        output("controller.believed_drag.y", &DRAG_COEFFICIENT, &["airframe.preset", "airframe.drag.y"], |outputs: &M::Outputs| outputs.belief().drag_n_s_m.y, "Drag coefficient east that the controllers go by: as learned in flight, or as configured"),
+        output("controller.believed_drag.z", &DRAG_COEFFICIENT, &["airframe.preset", "airframe.drag.z"], |outputs: &M::Outputs| outputs.belief().drag_n_s_m.z, "Drag coefficient down that the controllers go by: as learned in flight, or as configured"),
     ]
 }

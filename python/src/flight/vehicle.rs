@@ -4,7 +4,7 @@ use std::fmt::Display;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use quadrotor::{
-    Activity, ClosedLoopVehicle, Configuration, ConfigurationError, InputSignal, Inputs, Outputs,
+    Activity, Belief, ClosedLoopVehicle, Configuration, ConfigurationError, InputSignal, Inputs, Outputs,
     PlantSimulation, PlantState, PositionReference, Simulation, SimulationError,
 };
 
@@ -268,7 +268,7 @@ fn attitude(state: &PlantState) -> UnitQuaternion<f64> {
 
 /// What can be observed of a plant alone.
 fn of_plant(simulation: &PlantSimulation) -> Outputs {
-    let plant = simulation.outputs();
+    let (plant, airframe) = (simulation.outputs(), simulation.plant().airframe());
     Outputs {
         time_us: simulation.time_us(),
         position_m: plant.position_m,
@@ -287,5 +287,7 @@ fn of_plant(simulation: &PlantSimulation) -> Outputs {
         tracking_error_m: Vector3::zeros(),
         yaw_error_rad: 0.0,
         activity: Activity::default(),
+        // No controllers, no error of theirs.
+        belief: Belief { mass_kg: airframe.mass_kg, drag_n_s_m: airframe.drag_n_s_m.into() },
     }
 }

@@ -11,7 +11,7 @@ use crate::control::measurement::Instruments;
 use crate::design::loop_design::LoopDesign;
 use crate::design::prepared_design::PreparedDesign;
 use crate::finite::are_finite;
-use crate::{CascadeDesign, Configuration, ConfigurationError, Inputs, RigidBody, StabilityReport};
+use crate::{Belief, CascadeDesign, Configuration, ConfigurationError, Inputs, RigidBody, StabilityReport};
 
 /// Guidance, estimator and controllers of a vehicle: from references and measurements to rotor commands.
 ///
@@ -258,14 +258,9 @@ impl ControlLoop {
         self.state.watch(&self.design, inputs)
     }
 
-    /// Mass that the controllers go by, kg: as learned in flight, or as configured.
-    pub fn believed_mass_kg(&self) -> f64 {
-        self.state.believed(&self.design.configuration).believed_mass_kg()
-    }
-
-    /// Linear drag along the world axes that the controllers go by, N·s/m: as learned in flight, or as configured.
-    pub fn believed_drag_n_s_m(&self) -> Vector3<f64> {
-        self.state.believed(&self.design.configuration).airframe.drag_n_s_m.into()
+    /// Mass and drag that the controllers go by.
+    pub fn belief(&self) -> Belief {
+        self.state.belief(&self.design.configuration)
     }
 
     /// What the Kalman predictor takes the vehicle's motion for at `time_us`, while the loop flies by it.

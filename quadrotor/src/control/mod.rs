@@ -4,6 +4,7 @@ pub(crate) mod activity;
 pub(crate) mod altitude_controller;
 pub(crate) mod attitude_controller;
 pub(crate) mod attitude_reference;
+pub(crate) mod belief;
 pub(crate) mod cascade;
 pub(crate) mod command_limits;
 pub(crate) mod control_error;

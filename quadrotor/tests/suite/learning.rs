@@ -46,7 +46,7 @@ fn a_wrong_mass_does_not_bob() {
                 let inputs = Inputs { reference: PositionReference::goal(GOAL_M, 0.0), ..Inputs::default() };
                 let mut simulation = Simulation::new(&configuration, &inputs).unwrap();
                 let bob_m = distance_m(&mut simulation, &inputs, GOAL_M, [12.0, 20.0]);
-                let factor = simulation.control().believed_mass_kg() / configuration.airframe.mass_kg;
+                let factor = simulation.control().belief().mass_kg / configuration.airframe.mass_kg;
                 let told = format!("{kind:?} {output_feedback} {mass_factor}: {bob_m} m, {factor}");
                 assert!(bob_m < 0.002, "{told}");
                 // The less it bobs, the less there is to learn from.
@@ -126,7 +126,7 @@ fn a_wrong_mass_is_found_under_noise() {
         let mut simulation = Simulation::new(&configuration, &inputs).unwrap();
         for window_s in [[15.0, 25.0], [40.0, 50.0]] {
             let error_m = distance_m(&mut simulation, &inputs, GOAL_M, window_s);
-            let factor = simulation.control().believed_mass_kg() / configuration.airframe.mass_kg;
+            let factor = simulation.control().belief().mass_kg / configuration.airframe.mass_kg;
             assert!((factor - 1.0).abs() < 0.1, "{mass_factor}: {factor}");
             // Measured: 0.117 m with a mass factor of 1.5.
             assert!(error_m < 0.15, "{mass_factor}: {error_m} m");
@@ -175,7 +175,7 @@ fn a_load_hardly_moves_a_hovering_vehicle() {
             configuration.reference.shaping = true;
             let unknown = Unknown { mass_kg, force_n: Vector3::zeros() };
             let (worst_m, last_m, control) = hovering_under(&configuration, &unknown);
-            let found = (control.believed_mass_kg() - 0.7) / (mass_kg - 0.7);
+            let found = (control.belief().mass_kg - 0.7) / (mass_kg - 0.7);
             let told = format!("{kind:?} {mass_kg} kg: {worst_m} m, {last_m} m, {found} of the load");
             assert!(worst_m < 0.45 && last_m < 0.005, "{told}");
             assert!((-0.05..1.1).contains(&found), "{told}");
@@ -196,7 +196,7 @@ fn a_noisy_start_at_speed_teaches_no_wrong_mass() {
         let inputs =
             |time_us: u64| Inputs { reference: circle.reference(time_us, true), ..Inputs::default() };
         let flight = fly(&configuration, &inputs, 10.0, |_| {});
-        let factor = flight.control().believed_mass_kg() / configuration.airframe.mass_kg;
+        let factor = flight.control().belief().mass_kg / configuration.airframe.mass_kg;
         assert!((factor - 1.0).abs() < 0.03, "seed {seed}: {factor}");
     }
 }
@@ -212,7 +212,7 @@ fn a_steady_force_leaves_no_offset_and_no_mass() {
                 configuration.reference.shaping = true;
                 let unknown = Unknown { mass_kg: 0.7, force_n: force_n.into() };
                 let (_, last_m, control) = hovering_under(&configuration, &unknown);
-                let taken = (control.believed_mass_kg() / 0.7 - 1.0).abs();
+                let taken = (control.belief().mass_kg / 0.7 - 1.0).abs();
                 let told = format!("{kind:?} {output_feedback} {force_n:?}: {last_m} m, {taken}");
                 assert!(last_m < 0.005 && taken < most, "{told}");
             }
@@ -248,7 +248,7 @@ fn gusts_are_no_mass() {
             let mut flight = Simulation::new(&configuration, &inputs(0)).unwrap();
             for time_us in (0..OVER_US + 6_000_000).step_by(100_000) {
                 flight.advance_to(time_us, &inputs).unwrap();
-                let factor = flight.control().believed_mass_kg() / configuration.airframe.mass_kg;
+                let factor = flight.control().belief().mass_kg / configuration.airframe.mass_kg;
                 assert!((0.65..1.35).contains(&factor), "{preset:?} {kind:?}: {factor} at {time_us} µs");
             }
             let away_m = (flight.outputs().position_m - Vector3::from(GOAL_M)).norm();
@@ -342,7 +342,7 @@ fn drag_is_fed_forward() {
                     worst_m = worst_m.max((state.body.position_m - reference.position_m).norm());
                 }
             }
-            (worst_m, control.believed_drag_n_s_m().x)
+            (worst_m, control.belief().drag_n_s_m.x)
         };
         let (unaided_m, _) = worst_m(false, false);
         let (known_m, _) = worst_m(false, true);
@@ -374,11 +374,11 @@ fn every_law_goes_on_with_what_was_learned() {
     };
     let mut simulation = Simulation::new(&wrong, &inputs(0)).unwrap();
     simulation.advance_to(10_000_000, &inputs).unwrap();
-    let learned_kg = simulation.control().believed_mass_kg();
+    let learned_kg = simulation.control().belief().mass_kg;
     assert!((learned_kg / mass_kg - 1.0).abs() < 0.05, "{learned_kg} kg");
     let without = Inputs { lost_rotor: Some(0), ..Inputs::default() };
     simulation.advance_to(12_000_000, &without).unwrap();
-    assert_eq!(simulation.control().believed_mass_kg(), learned_kg);
+    assert_eq!(simulation.control().belief().mass_kg, learned_kg);
 }
 
 /// What was learned is part of the saved state: a flight goes on from there bit for bit.
@@ -396,7 +396,7 @@ fn what_was_learned_is_saved() {
         flight.advance_to(4_000_000, &inputs).unwrap();
     }
     assert_eq!(simulation.state(), restored.state());
-    assert_ne!(simulation.control().believed_mass_kg(), 0.8 * configuration.airframe.mass_kg);
+    assert_ne!(simulation.control().belief().mass_kg, 0.8 * configuration.airframe.mass_kg);
 }
 
 /// Switched off, the belief is the configured one again; switched on, learning starts from it. Neither moves the vehicle.
@@ -408,11 +408,11 @@ fn learning_is_switched_in_flight() {
     let mut simulation = Simulation::new(&configuration, &inputs).unwrap();
     simulation.advance_to(15_003_000, &inputs).unwrap();
     let mass_kg = configuration.airframe.mass_kg;
-    assert!((simulation.control().believed_mass_kg() / mass_kg - 1.0).abs() < 0.03);
+    assert!((simulation.control().belief().mass_kg / mass_kg - 1.0).abs() < 0.03);
     for (learning, time_s) in [(false, 20.0), (true, 25.0)] {
         configuration.controllers.learning = learning;
         simulation.reconfigure(&configuration).unwrap();
-        assert!((simulation.control().believed_mass_kg() / mass_kg - 0.8).abs() < 1e-12);
+        assert!((simulation.control().belief().mass_kg / mass_kg - 0.8).abs() < 1e-12);
         let moved_m = distance_m(&mut simulation, &inputs, GOAL_M, [time_s - 4.9, time_s]);
         assert!(moved_m < 0.002, "{learning}: {moved_m} m");
     }

@@ -249,7 +249,7 @@ fn a_cruise_stays_calm_whatever_the_model_misses() {
                     (*least, *most) = (value.min(*least), value.max(*most));
                 }
             }
-            let believed = simulation.control().believed_mass_kg() / airframe.mass_kg;
+            let believed = simulation.control().belief().mass_kg / airframe.mass_kg;
             let swing_deg = (pitches[1] - pitches[0]).to_degrees();
             let told = format!(
                 "{preset:?} {gust_share} {learning} {mass_factor} {fall_time_ratio}: {speeds:?} m/s, {swing_deg}°, {believed}"

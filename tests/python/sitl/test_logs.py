@@ -107,6 +107,7 @@ def test_flights_read_by_pyulog(start, connect, program, tmp_path):
     control = data["lmpc_status"]
     assert np.max(control["position_active_constraints"]) >= 0 and set(control["attitude_status"]) <= {0, 1, 2, 3}
     assert np.median(control["thrust_n"][control["steering"] == 1]) == pytest.approx(0.7 * 9.80665, rel=0.1)
+    assert control["believed_mass_kg"][-1] == pytest.approx(0.7, rel=0.05)
 
     # With the log the flight is that of the record.
     flight = vehicle.output().split("digest ")[1].split()[0]

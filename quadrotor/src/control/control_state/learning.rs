@@ -4,12 +4,17 @@ use super::ControlState;
 use crate::control::control_inputs::ControlLaw;
 use crate::control::learning::mass_and_drag::FlightSample;
 use crate::control::learning::motion_equation::MeasuredMotion;
-use crate::{Configuration, RigidBody};
+use crate::{Belief, Configuration, RigidBody};
 
 impl ControlState {
     /// What the controllers take for the vehicle: the configuration with mass and drag as they were learned.
     pub(crate) fn believed(&self, configuration: &Configuration) -> Configuration {
         self.learned.in_place_of_belief(configuration)
+    }
+
+    /// Mass and drag that the controllers go by.
+    pub(crate) fn belief(&self, configuration: &Configuration) -> Belief {
+        self.learned.belief(configuration)
     }
 
     /// Learns mass and drag from the motion until now, and goes on with the configuration that has them.

@@ -10,7 +10,7 @@ use crate::control::learning::motion_equation::{
     MEMORY_S, MeasuredMotion, MotionEquation, Sampled, Terms, noise_of_positions, noise_of_velocities,
 };
 use crate::control::learning::steady_thrust::SteadyThrust;
-use crate::{Configuration, GRAVITY_M_S2, Sensors, wrench_of_rotors};
+use crate::{Belief, Configuration, GRAVITY_M_S2, Sensors, wrench_of_rotors};
 
 /// Learned: μ, the airframe's mass over the learned one; κ, drag per mass along north, east and down, 1/s; d, the
 /// acceleration by other forces, NED, m/s².
@@ -170,6 +170,15 @@ impl MassAndDrag {
             learned.airframe.drag_n_s_m = self.drag_n_s_m(configuration).into();
         }
         learned
+    }
+
+    /// What the controllers of a configuration go by.
+    pub(crate) fn belief(&self, configuration: &Configuration) -> Belief {
+        if configuration.controllers.learning {
+            Belief { mass_kg: self.mass_kg(configuration), drag_n_s_m: self.drag_n_s_m(configuration) }
+        } else {
+            Belief::configured(configuration)
+        }
     }
 
     /// Goes on under another configuration. What it believes in is learned anew if that has changed.

@@ -94,6 +94,7 @@ pub fn lmpc_status(source: &LogSource<'_>, row: &mut Row) {
     row.reals(outputs.tracking_error_m.data.0[0]).reals([outputs.yaw_error_rad]);
     row.reals(outputs.tilt_reference_rad).reals([outputs.thrust_n]).reals(outputs.torque_n_m.data.0[0]);
     row.reals(outputs.rotor_speed_rad_s);
+    row.reals([outputs.belief.mass_kg]).reals(outputs.belief.drag_n_s_m.data.0[0]);
     let activity = &outputs.activity;
     let all = [&activity.altitude, &activity.position, &activity.attitude];
     for of in [|one: &ControllerActivity| one.iterations, |one: &ControllerActivity| one.active] {
