@@ -21,7 +21,7 @@ struct Arguments {
     /// Prints the JSON Schema of results.json, and exits.
     #[arg(long, conflicts_with = "gain")]
     schema: bool,
-    /// Compares N, a and the stabilizing feedback of the loops by their cost in flight, and exits.
+    /// Compares N, a, the stabilizing feedback and the samples of limits of the loops by their cost in flight, and exits.
     #[arg(long, conflicts_with_all = ["gain", "schema"])]
     tune: bool,
     /// Optimal flights that xtask/python/optimum.py found, to compare with.

@@ -1,11 +1,11 @@
-//! N, a and the stabilizing feedback of the shipped loops, chosen by what they cost in flight (`--tune`).
+//! N, a, the stabilizing feedback and the samples at which limits hold of the shipped loops, chosen by what they cost in flight (`--tune`).
 
 use std::f64::consts::TAU;
 use std::iter;
 
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::SeedableRng;
-use lmpc::{ClosedLoop, DesignError, DesignSearch, StabilizedMpc, Trial, TrialCost, unknowns};
+use lmpc::{ClosedLoop, DesignError, DesignSearch, SignalLimit, StabilizedMpc, Trial, TrialCost, unknowns};
 use quadrotor::{Configuration, HoverLoop, HoverLoops};
 use rand_distr::{Distribution, StandardUniform};
 use rayon::prelude::*;
@@ -33,16 +33,70 @@ const FARTHEST_M: f64 = 20.0;
 const FASTEST_M_S: f64 = 7.5;
 const SEED: u64 = 2015;
 
+/// At which samples ahead limits hold, beside those that are shipped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Placement {
+    Shipped,
+    /// Every other one of them, and the first and last.
+    Sparser,
+    /// And those half-way between two of them.
+    Denser,
+    /// Those after the first, half as far ahead.
+    Sooner,
+    /// Those after the first, half as far again.
+    Later,
+}
+
+impl Placement {
+    const OTHERS: [Self; 4] = [Self::Sparser, Self::Denser, Self::Sooner, Self::Later];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Shipped => "shipped",
+            Self::Sparser => "sparser",
+            Self::Denser => "denser",
+            Self::Sooner => "sooner",
+            Self::Later => "later",
+        }
+    }
+
+    /// Samples in place of shipped ones, which rise.
+    fn of(self, shipped: &[usize]) -> Vec<usize> {
+        let (Some(first), Some(last)) = (shipped.first().copied(), shipped.last().copied()) else {
+            return Vec::new();
+        };
+        let moved = |halves: usize| shipped.iter().map(move |sample| first + (sample - first) * halves / 2);
+        let mut samples: Vec<usize> = match self {
+            Self::Shipped => shipped.to_vec(),
+            Self::Sparser => shipped.iter().copied().step_by(2).chain([last]).collect(),
+            Self::Denser => {
+                let between = shipped.windows(2).map(|pair| usize::midpoint(pair[0], pair[1]));
+                shipped.iter().copied().chain(between).collect()
+            }
+            Self::Sooner => moved(1).collect(),
+            Self::Later => moved(3).collect(),
+        };
+        samples.sort_unstable();
+        samples.dedup();
+        samples
+    }
+
+    fn place(self, limits: &[SignalLimit]) -> Vec<SignalLimit> {
+        limits.iter().map(|limit| SignalLimit { samples: self.of(&limit.samples), ..limit.clone() }).collect()
+    }
+}
+
 /// A way to plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Candidate {
     terms: usize,
     scale: f64,
     share: f64,
+    placement: Placement,
 }
 
 impl Candidate {
-    /// One step of one of N and a away.
+    /// One step of one of N and a away. Limits that hold elsewhere are tried with the shipped ones alone, whose neighbours stand for theirs.
     fn is_beside(&self, other: &Self) -> bool {
         let terms = self.terms.abs_diff(other.terms);
         let scales = ((self.scale - other.scale) / SCALE_STEP).abs().round() as u32;
@@ -156,17 +210,20 @@ fn of_loop<const N: usize, const P: usize, const E: usize>(
         terms: settings.terms as usize,
         scale: settings.scale,
         share: problem.stabilizing_share(),
+        placement: Placement::Shipped,
     };
     let costs_of = |candidate: &Candidate| -> Result<Vec<TrialCost>, DesignError> {
         let design = problem.design(candidate.terms, candidate.scale, candidate.share)?;
-        let law = StabilizedMpc::<N, P, P, E>::new(&design, limits, slack_cost)?;
+        // Limits that hold elsewhere are those of the plan alone: what a flight violates is counted where it flies.
+        let law = StabilizedMpc::<N, P, P, E>::new(&design, &candidate.placement.place(limits), slack_cost)?;
         trials.iter().map(|(_, trial)| closed.fly::<N, P, P, E>(&law, trial, samples)).collect()
     };
     let scales = (-SCALES..=SCALES).map(|step| shipped.scale + SCALE_STEP * f64::from(step));
     let others = scales
         .filter(|scale| *scale < 0.99)
         .flat_map(|scale| TERMS.map(move |terms| (terms, scale)))
-        .flat_map(|(terms, scale)| SHARES.map(|share| Candidate { terms, scale, share }))
+        .flat_map(|(terms, scale)| SHARES.map(|share| Candidate { terms, scale, share, ..shipped }))
+        .chain(Placement::OTHERS.map(|placement| Candidate { placement, ..shipped }))
         .filter(|other| *other != shipped && is_tried(&shipped, other));
     let candidates: Vec<Candidate> = iter::once(shipped).chain(others).collect();
     let costs: Vec<Vec<TrialCost>> =
@@ -205,8 +262,10 @@ impl Compared {
 
     /// The shipped candidate and those that a search would choose, one line each, and each trial of the shipped one.
     fn table(&self) -> String {
-        let mut lines =
-            vec![self.name.to_owned(), "                 N      a  share  excess  off by one".to_owned()];
+        let mut lines = vec![
+            self.name.to_owned(),
+            "                 N      a  share  limits  excess  off by one".to_owned(),
+        ];
         let rows = [
             ("shipped", Some(0)),
             ("least excess", self.search.best()),
@@ -216,14 +275,16 @@ impl Compared {
             let Some(index) = index else { continue };
             let candidate = &self.search.candidates()[index];
             lines.push(format!(
-                "  {what:<13} {:>2}  {:.3}   {:.2} {:>6.2} % {:>9.2} %",
+                "  {what:<13} {:>2}  {:.3}   {:.2} {:>7} {:>6.2} % {:>9.2} %",
                 candidate.terms,
                 candidate.scale,
                 candidate.share,
+                candidate.placement.name(),
                 percent(self.search.worst_excess(index)),
                 percent(self.each_off_by_one(index).fold(0.0, f64::max)),
             ));
         }
+        lines.push(self.placements());
         lines.push("  step, shipped                stages   violations  excess  off by one".to_owned());
         for (trial, (name, cost)) in self.trials.iter().enumerate() {
             lines.push(format!(
@@ -235,6 +296,23 @@ impl Compared {
             ));
         }
         lines.join("\n") + "\n\n"
+    }
+
+    /// By how much the shipped candidate costs more on its worst trial with limits placed otherwise, and by how much at best less.
+    fn placements(&self) -> String {
+        let each = Placement::OTHERS.iter().filter_map(|placement| {
+            let candidates = self.search.candidates();
+            let shipped = candidates.first()?;
+            let wanted = Candidate { placement: *placement, ..*shipped };
+            let index = candidates.iter().position(|other| *other == wanted)?;
+            let more = (0..self.trials.len())
+                .map(|trial| self.search.cost(index, trial) / self.search.cost(0, trial) - 1.0);
+            let [least, most] = more.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], more| {
+                [least.min(more), most.max(more)]
+            });
+            Some(format!("{} {:+.2} to {:+.2} %", placement.name(), percent(least), percent(most)))
+        });
+        format!("  limits placed otherwise cost: {}", each.collect::<Vec<_>>().join(", "))
     }
 
     /// On how many trials the shipped candidate loses more than [`MOST_LOSS`] when it is off by one, and how much at worst.
@@ -262,7 +340,7 @@ mod tests {
     use lmpc::TrialCost;
     use quadrotor::Configuration;
 
-    use super::{Candidate, Compared, MOST_LOSS, compared_loops};
+    use super::{Candidate, Compared, MOST_LOSS, Placement, compared_loops};
     use crate::constrained_step::axis::Axis;
 
     /// Each step of the report is one of those on which designs are compared.
@@ -277,6 +355,22 @@ mod tests {
                 let name = parts.join(", ");
                 assert!(compared.trials.iter().any(|(trial, _)| *trial == name), "{}", step.problem);
             }
+        }
+    }
+
+    /// The placements keep the first sample, and no sample counts twice.
+    #[test]
+    fn limits_are_placed_otherwise() {
+        let shipped = [1, 2, 4, 8, 20];
+        for (placement, samples) in [
+            (Placement::Shipped, vec![1, 2, 4, 8, 20]),
+            (Placement::Sparser, vec![1, 4, 20]),
+            (Placement::Denser, vec![1, 2, 3, 4, 6, 8, 14, 20]),
+            (Placement::Sooner, vec![1, 2, 4, 10]),
+            (Placement::Later, vec![1, 2, 5, 11, 29]),
+        ] {
+            assert_eq!(placement.of(&shipped), samples, "{placement:?}");
+            assert!(placement.of(&[]).is_empty() && placement.of(&[3]) == [3]);
         }
     }
 
