@@ -32,7 +32,7 @@ fn bits(outputs: &Outputs) -> Vec<u64> {
         ("tracking_error.", vector(o.tracking_error_m.as_slice())),
         ("yaw_error", vec![o.yaw_error_rad]),
     ];
-    let mut bits = Vec::new();
+    let (mut reals, mut whole) = (Vec::new(), Vec::new());
     let outputs =
         closed_loop().description.variables.iter().filter(|variable| variable.causality == "output");
     let mut names = outputs.map(|variable| variable.name.as_str());
@@ -40,7 +40,7 @@ fn bits(outputs: &Outputs) -> Vec<u64> {
         for value in values {
             let name = names.next().expect("as many outputs as the engine has");
             assert!(name.starts_with(group), "{name} is not in {group}");
-            bits.push(value.to_bits());
+            reals.push(value.to_bits());
         }
     }
     let activity = &o.activity;
@@ -60,15 +60,22 @@ fn bits(outputs: &Outputs) -> Vec<u64> {
         ];
         for (figure, value) in figures {
             assert_eq!(names.next(), Some(format!("controller.{controller}.{figure}").as_str()));
-            bits.push(value);
+            whole.push(value);
         }
     }
     for (controller, activity) in activities {
         assert_eq!(names.next(), Some(format!("controller.{controller}.status_number").as_str()));
-        bits.push(status(&activity));
+        whole.push(status(&activity));
+    }
+    let drag = ["drag.x", "drag.y", "drag.z"].into_iter().zip(o.belief.drag_n_s_m.iter().copied());
+    for (name, value) in [("mass", o.belief.mass_kg)].into_iter().chain(drag) {
+        assert_eq!(names.next(), Some(format!("controller.believed_{name}").as_str()));
+        reals.push(value.to_bits());
     }
     assert_eq!(names.next(), None);
-    bits
+    // An instance tells real numbers first.
+    reals.extend(whole);
+    reals
 }
 
 /// Each kind of controller, on noisy outputs alone, is the engine's too.

@@ -238,7 +238,7 @@ pub(crate) mod tests {
             for time_s in [-5.0, -4.0, -2.5, -1.7, -1.1, 0.0, 1.0] {
                 let [before, now, after] = [of(time_s - H), of(time_s), of(time_s + H)];
                 let whole = RequiredThrust::whole(&configuration, &rising_spiral(time_s, climb));
-                let up_m_s2 = crate::GRAVITY_M_S2 - now.acceleration_m_s2.z;
+                let up_m_s2 = GRAVITY_M_S2 - now.acceleration_m_s2.z;
                 let tangent = now.acceleration_m_s2.xy().norm() / up_m_s2;
                 let leans_most = (tangent - libm::tan(lean_rad)).abs() < 1e-9;
                 within += u32::from(now == whole);
@@ -267,9 +267,9 @@ pub(crate) mod tests {
                 ..PositionReference::goal([0.0; 3], 0.0)
             };
             let required = RequiredThrust::of(&configuration, &reference, 0.5);
-            let up_m_s2 = crate::GRAVITY_M_S2 - required.acceleration_m_s2.z;
+            let up_m_s2 = GRAVITY_M_S2 - required.acceleration_m_s2.z;
             // 0.6 and 2 of the weight
-            let expected = if vertical_m_s2 > 0.0 { 0.6 } else { 2.0 } * crate::GRAVITY_M_S2;
+            let expected = if vertical_m_s2 > 0.0 { 0.6 } else { 2.0 } * GRAVITY_M_S2;
             assert!((up_m_s2 - expected).abs() < 1e-9, "{up_m_s2}");
             assert!(required.acceleration_m_s2.xy().norm() <= libm::tan(0.5) * up_m_s2 + 1e-9);
             assert_eq!((required.jerk_m_s3.z, required.snap_m_s4.z), (0.0, 0.0));
@@ -290,10 +290,10 @@ pub(crate) mod tests {
         let lean = |time_s: f64| {
             let acceleration =
                 cut.acceleration_m_s2 + cut.jerk_m_s3 * time_s + cut.snap_m_s4 * (time_s * time_s / 2.0);
-            acceleration.xy().norm() / (crate::GRAVITY_M_S2 - acceleration.z)
+            acceleration.xy().norm() / (GRAVITY_M_S2 - acceleration.z)
         };
         let [before, now, after] = [-STEP_S, 0.0, STEP_S].map(lean);
-        assert!((now - 4.0 / (crate::GRAVITY_M_S2 - 1.5)).abs() < 1e-12, "{now}");
+        assert!((now - 4.0 / (GRAVITY_M_S2 - 1.5)).abs() < 1e-12, "{now}");
         assert!(((after - before) / (2.0 * STEP_S)).abs() < 1e-4, "{before} {after}");
         assert!(((after - 2.0 * now + before) / (STEP_S * STEP_S)).abs() < 1e-3, "{before} {now} {after}");
     }
@@ -329,7 +329,7 @@ pub(crate) mod tests {
     fn what_cannot_be_leant_is_shortened() {
         let configuration = dragged();
         let lean_rad = 0.5;
-        let largest = libm::tan(lean_rad) * crate::GRAVITY_M_S2;
+        let largest = libm::tan(lean_rad) * GRAVITY_M_S2;
         for (time_s, whole) in [(-5.0, true), (0.0, false)] {
             let reference = spiral(time_s);
             let drag = Vector3::new(0.4, 0.25, 0.1).component_mul(&reference.velocity_m_s);

@@ -1,7 +1,7 @@
 //! A vehicle made by hand, for tests of single machines.
 
 use nalgebra::Vector3;
-use quadrotor::{Activity, BatteryOutput, Configuration, EasedLimits, Outputs, PositionReference};
+use quadrotor::{Activity, BatteryOutput, Belief, Configuration, EasedLimits, Outputs, PositionReference};
 
 use super::conduct::Conduct;
 use super::home::Home;
@@ -87,6 +87,7 @@ impl Scene {
                 tracking_error_m: Vector3::zeros(),
                 yaw_error_rad: 0.0,
                 activity: Activity::default(),
+                belief: Belief::configured(&configuration),
             },
             armed: true,
             mode: Mode::Hold,
