@@ -117,8 +117,12 @@ def test_a_start_below_the_plateau_is_refused(fmu, capsys, model):
 
 
 @pytest.mark.parametrize("model", ["LmpcQuadrotor", "LmpcController", "QuadrotorPlant"])
-def test_the_ground_comes_last_so_that_no_value_reference_has_moved(fmu, model):
+def test_what_was_added_comes_last_so_that_no_value_reference_has_moved(fmu, model):
     variables = read_model_description(str(fmu.with_name(f"{model}.fmu"))).modelVariables
-    ground = variables[-1]
+    assert [variable.valueReference for variable in variables] == list(range(len(variables)))
+    believed = [f"controller.believed_{name}" for name in ("mass", "drag.x", "drag.y", "drag.z")]
+    later = [] if model == "QuadrotorPlant" else believed
+    names = [variable.name for variable in variables]
+    assert names[len(names) - len(later) :] == later
+    ground = variables[len(names) - len(later) - 1]
     assert (ground.name, ground.causality, ground.unit, float(ground.start)) == ("ground.z", "input", "m", 0.0)
-    assert ground.valueReference == len(variables) - 1

@@ -50,13 +50,13 @@ def test_serialized_state_continues_in_another_process(slave, fmu, tmp_path):
         import sys
         import numpy as np
         from fmpy import simulate_fmu
-        fmu, state, out = sys.argv[1:]
+        fmu, state, out, *names = sys.argv[1:]
         result = simulate_fmu(fmu, start_time=2.0, stop_time=4.0, output_interval=0.01,
                               fmu_state=open(state, "rb").read())
-        np.save(out, np.column_stack([result[name] for name in result.dtype.names[1:]]))
+        np.save(out, np.column_stack([result[name] for name in names]))
         """
     )
-    arguments = [str(fmu), str(tmp_path / "state"), str(tmp_path / "result.npy")]
+    arguments = [str(fmu), str(tmp_path / "state"), str(tmp_path / "result.npy"), *flown.outputs]
     subprocess.run([sys.executable, "-c", script, *arguments], check=True, timeout=120)
     result = np.load(tmp_path / "result.npy")
     np.testing.assert_array_equal(result[1:], expected)

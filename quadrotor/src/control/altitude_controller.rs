@@ -50,7 +50,7 @@ impl AltitudeController {
         let [[position, velocity, acceleration, ..]] = reference.increments_since(&self.reference);
         let error = planned_error_m(configuration, law.regulator(), seen, reference, range);
         let rate_m_s = reference.velocity.x;
-        let lag_s = configuration.airframe.rotor_time_constant_s;
+        let lag_s = configuration.airframe.mean_rotor_lag_s();
         let deviation =
             Vector3::new(error.x, seen.velocity_m_s - rate_m_s, seen.acceleration_m_s2 - reference.thrust.x);
         let motion = MotionSample {

@@ -180,7 +180,7 @@ impl AttitudeController {
     ) -> (AskedTorque, ControllerActivity) {
         self.turn_with_the_body(&seen.attitude);
         let in_body = seen.attitude.inverse() * reference.attitude;
-        let lag_s = configuration.airframe.rotor_time_constant_s;
+        let lag_s = configuration.airframe.mean_rotor_lag_s();
         let inertia_kg_m2 = configuration.believed_inertia_kg_m2();
         let spin = Spin {
             inertia_kg_m2,

@@ -275,7 +275,7 @@ impl Cascade {
         let attitude = self.required_attitude(configuration, &required, &Heading::of(reference), upright);
         let later = self.required_attitude(configuration, &later, &Heading::of(answered), upright);
         self.tilt_reference_rad = attitude.tilt_rad();
-        let lag_s = configuration.airframe.rotor_time_constant_s;
+        let lag_s = configuration.airframe.mean_rotor_lag_s();
         let change = attitude.attitude.inverse() * later.attitude * later.angular_acceleration_rad_s2
             - attitude.angular_acceleration_rad_s2;
         let required = AttitudeReference {
@@ -402,7 +402,7 @@ fn upright(body: &RigidBody) -> f64 {
 /// follows c when c + T ċ is commanded.
 fn upright_when_answered(configuration: &Configuration, body: &RigidBody) -> f64 {
     let held_s = configuration.controllers.attitude.sample_time_s();
-    let later_s = configuration.airframe.rotor_time_constant_s + held_s / 2.0;
+    let later_s = configuration.airframe.mean_rotor_lag_s() + held_s / 2.0;
     let rising_1_s = (body.rotation() * body.body_rate_rad_s.cross(&Vector3::z())).z;
     (upright(body) + rising_1_s * later_s).clamp(UPRIGHT, 1.0)
 }

@@ -417,7 +417,7 @@ impl ControlState {
             let limits = &design.configuration.limits;
             let now = self.guidance.sample_heading(reference, limits, time_us).on(&now);
             // A command takes effect as late as the rotors answer, and in the middle of the time for which it is held.
-            let lag_us = (configuration.airframe.rotor_time_constant_s * 1e6) as u64;
+            let lag_us = (configuration.airframe.mean_rotor_lag_s() * 1e6) as u64;
             let answered_us = time_us + lag_us + configuration.controllers.attitude.sample_time_us / 2;
             let answered = ahead(&self.guidance, answered_us);
             self.command = self.cascade.sample_attitude(configuration, cascade, seen, (&now, &answered));

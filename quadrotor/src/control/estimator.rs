@@ -13,7 +13,7 @@ use crate::{Configuration, GRAVITY_M_S2, RigidBody, Sensors, Wrench, wrench_of_r
 /// Share of the difference between a rotor's speed and its command that is left after a time:
 /// ω(t + T) = ω_command + (ω − ω_command) e^(−T/τ).
 pub(crate) fn lag_kept(configuration: &Configuration, time_s: f64) -> f64 {
-    libm::exp(-time_s / configuration.airframe.rotor_time_constant_s)
+    libm::exp(-time_s / configuration.airframe.mean_rotor_lag_s())
 }
 
 /// The estimate of the vehicle's motion at the next sample of the attitude controller.

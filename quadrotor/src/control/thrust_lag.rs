@@ -26,7 +26,7 @@ pub(crate) struct ThrustLag {
 impl ThrustLag {
     /// For commands that are held for `sample_time_s`.
     pub(crate) fn new(airframe: &Airframe, model: PredictionModel, sample_time_s: f64) -> Self {
-        let kept = libm::exp(-sample_time_s / airframe.rotor_time_constant_s);
+        let kept = libm::exp(-sample_time_s / airframe.mean_rotor_lag_s());
         Self {
             kept: (model == PredictionModel::InnerLoops).then_some(kept),
             per_rest: 1.0 / (1.0 - kept),

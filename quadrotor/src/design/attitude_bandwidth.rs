@@ -41,7 +41,7 @@ impl AttitudeBandwidth {
             PredictionModel::Paper => (DELAY_SHARE_PROMPT, PROPORTIONAL_PROMPT_RAD),
         };
         let sample_time_s = configuration.controllers.attitude.sample_time_s();
-        let fastest = share / (airframe.rotor_time_constant_s + sample_time_s / 2.0);
+        let fastest = share / (airframe.mean_rotor_lag_s() + sample_time_s / 2.0);
         let [roll, pitch, yaw] = available_rad_s2(airframe, mixer);
         let closed = |acceleration: f64| fastest.min(libm::sqrt(acceleration / proportional_rad));
         let lean = roll.min(pitch);

@@ -71,7 +71,7 @@ impl AttitudeDesign {
         let sight_s = [last * sample_time_s, last * longer * sample_time_s];
         match controllers.model {
             PredictionModel::InnerLoops => {
-                let lag_s = configuration.airframe.rotor_time_constant_s;
+                let lag_s = configuration.airframe.mean_rotor_lag_s();
                 let axis = lagged_attitude_model(1, lag_s, sample_time_s)?;
                 let (lean, turn) = attitude_problems(configuration, mixer)?;
                 let lean = StabilizedLaw::new(kind, &lean)?;
@@ -132,7 +132,7 @@ pub(crate) fn attitude_problems(
     let bandwidth = AttitudeBandwidth::new(configuration, mixer);
     let longer = longer_turn(&bandwidth);
     let airframe = &configuration.airframe;
-    let (lag_s, sample_time_s) = (airframe.rotor_time_constant_s, settings.sample_time_s());
+    let (lag_s, sample_time_s) = (airframe.mean_rotor_lag_s(), settings.sample_time_s());
     let lean = LoopProblem::new(
         &of_axes(settings, [0, 1], 1.0),
         &[bandwidth.lean_rad_s; 2].into(),

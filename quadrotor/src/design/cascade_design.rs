@@ -168,7 +168,7 @@ impl Redesigned {
         Self {
             altitude: every
                 || before.altitude != after.altitude
-                || one.airframe.rotor_time_constant_s != other.airframe.rotor_time_constant_s
+                || one.airframe.mean_rotor_lag_s() != other.airframe.mean_rotor_lag_s()
                 || one.drag_1_s().z != other.drag_1_s().z,
             position: every
                 || before.position != after.position

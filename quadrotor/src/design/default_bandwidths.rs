@@ -51,8 +51,8 @@ impl Agility {
         let up = default_spare_thrust(airframe);
         let down = 1.0 - limits.thrust_min;
         Ok(Self {
-            torque_delay_s: airframe.rotor_time_constant_s + controllers.attitude.sample_time_s() / 2.0,
-            thrust_delay_s: airframe.rotor_time_constant_s + controllers.altitude.sample_time_s() / 2.0,
+            torque_delay_s: airframe.mean_rotor_lag_s() + controllers.attitude.sample_time_s() / 2.0,
+            thrust_delay_s: airframe.mean_rotor_lag_s() + controllers.altitude.sample_time_s() / 2.0,
             tilt_acceleration_rad_s2: (roll_n_m / roll).min(pitch_n_m / pitch),
             yaw_acceleration_rad_s2: yaw_n_m / yaw,
             horizontal_acceleration_m_s2: GRAVITY_M_S2

@@ -140,7 +140,7 @@ fn model(
     (spin_rad_s, lean_rad): (f64, f64),
     sample_time_s: f64,
 ) -> Result<StateSpace, DesignError> {
-    let (l, lag) = (airframe.arm_length_m, 1.0 / airframe.rotor_time_constant_s);
+    let (l, lag) = (airframe.arm_length_m, 1.0 / airframe.mean_rotor_lag_s());
     // l_o of the lost and the opposite rotor, and the place of the right one.
     let (opposite, right) = (l * rotors.distance, rotors.right * l);
     let (n1, n3) = (libm::sin(lean_rad), libm::cos(lean_rad));

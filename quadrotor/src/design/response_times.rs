@@ -16,7 +16,7 @@ impl Configuration {
     pub(crate) fn response_times(&self) -> ResponseTimes {
         let controllers = &self.controllers;
         ResponseTimes {
-            torque_delay_s: self.airframe.rotor_time_constant_s + controllers.attitude.sample_time_s() / 2.0,
+            torque_delay_s: self.airframe.mean_rotor_lag_s() + controllers.attitude.sample_time_s() / 2.0,
             sample_time_s: controllers.position.sample_time_s(),
         }
     }

@@ -29,7 +29,7 @@ impl RotorLossDesign {
             (
                 (airframe.arm_length_m, airframe.layout),
                 airframe.inertia_kg_m2,
-                airframe.rotor_time_constant_s,
+                airframe.mean_rotor_lag_s(),
                 configuration.controllers.attitude.sample_time_us,
             )
         };

@@ -109,7 +109,7 @@ pub(crate) fn position_design(
 /// What the altitude controller minimizes, on the model with the rotors' lag.
 pub(crate) fn altitude_problem(configuration: &Configuration) -> Result<LoopProblem<1>, DesignError> {
     let settings = &configuration.controllers.altitude;
-    let lag_s = configuration.airframe.rotor_time_constant_s;
+    let lag_s = configuration.airframe.mean_rotor_lag_s();
     let model = altitude_model_with_lag(lag_s, configuration.drag_1_s().z, settings.sample_time_s())?;
     let bandwidth = [ALTITUDE_RAD_S].into();
     Ok(LoopProblem::new(settings, &bandwidth, altitude_limits(settings.sample_time_s()), SIGHT_M, &model)?

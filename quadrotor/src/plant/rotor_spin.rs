@@ -61,6 +61,11 @@ impl Airframe {
         self.rotor_time_constant_s * if falls { self.rotor_spin.fall_time_ratio } else { 1.0 }
     }
 
+    /// Time constant of the lag of rotors that slow down as often as they speed up, s: the mean of both. Controllers are designed for it.
+    pub(crate) fn mean_rotor_lag_s(&self) -> f64 {
+        self.rotor_time_constant_s * (1.0 + self.rotor_spin.fall_time_ratio) / 2.0
+    }
+
     /// Near hover, the reaction to spin-up is the drag torque's rate of change times this, s: J_r Ω̇ = J_r/(2k₂Ω) · d(k₂Ω²)/dt.
     pub(crate) fn spin_up_lead_s(&self) -> f64 {
         let drag_per_speed = 2.0 * self.torque_coefficient_n_m_s2 * self.hover_rotor_speed_rad_s();
@@ -120,6 +125,8 @@ mod tests {
         let spin = RotorSpin { fall_time_ratio: 2.5, ..RotorSpin::default() };
         let airframe = Airframe { rotor_spin: spin, rotor_time_constant_s: 0.04, ..Airframe::default() };
         assert_eq!((airframe.lag_s(300.0, 200.0), airframe.lag_s(200.0, 300.0)), (0.04, 0.1));
+        assert!((airframe.mean_rotor_lag_s() - 0.07).abs() < 1e-15);
+        assert_eq!(Airframe::default().mean_rotor_lag_s(), Airframe::default().rotor_time_constant_s);
         let lag = RotorLag::new(&airframe);
         let [rising, falling, ..] =
             lag.accelerations_rad_s2(&[300.0, 200.0, 0.0, 0.0], &[200.0, 300.0, 0.0, 0.0]);

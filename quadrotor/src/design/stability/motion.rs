@@ -47,7 +47,7 @@ pub(crate) fn rotation(
     lead_s: f64,
     duration_s: f64,
 ) -> Result<Motion<4>, DesignError> {
-    let lag = 1.0 / configuration.airframe.rotor_time_constant_s;
+    let lag = 1.0 / configuration.airframe.mean_rotor_lag_s();
     let mut a = SMatrix::zeros();
     // φ̇ = ω,  ω̇ = α + T α̇,  α̇ = (α_c − α)/τ
     (a[(0, 1)], a[(1, 2)], a[(1, 3)]) = (1.0, 1.0 - lead_s * lag, lead_s * lag);
@@ -63,7 +63,7 @@ pub(crate) fn horizontal(
 ) -> Result<Motion<6>, DesignError> {
     let airframe = &configuration.airframe;
     let (lag, drag) =
-        (1.0 / airframe.rotor_time_constant_s, airframe.hover_drag_n_s_m()[axis] / airframe.mass_kg);
+        (1.0 / airframe.mean_rotor_lag_s(), airframe.hover_drag_n_s_m()[axis] / airframe.mass_kg);
     let mut a = SMatrix::zeros();
     // ẋ = v,  v̇ = g φ − d v/m: under the thrust of hover
     (a[(0, 1)], a[(1, 2)], a[(1, 1)]) = (1.0, GRAVITY_M_S2, -drag);
@@ -74,8 +74,7 @@ pub(crate) fn horizontal(
 /// Position down, velocity, acceleration by the rotors' thrust, and the commanded one.
 pub(crate) fn vertical(configuration: &Configuration, duration_s: f64) -> Result<Motion<4>, DesignError> {
     let airframe = &configuration.airframe;
-    let (lag, drag) =
-        (1.0 / airframe.rotor_time_constant_s, airframe.hover_drag_n_s_m()[2] / airframe.mass_kg);
+    let (lag, drag) = (1.0 / airframe.mean_rotor_lag_s(), airframe.hover_drag_n_s_m()[2] / airframe.mass_kg);
     let mut a = SMatrix::zeros();
     // ż = w,  ẇ = f − d w/m,  ḟ = (f_c − f)/τ
     (a[(0, 1)], a[(1, 2)], a[(1, 1)], a[(2, 2)], a[(2, 3)]) = (1.0, 1.0, -drag, -lag, lag);
