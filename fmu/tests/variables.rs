@@ -172,7 +172,7 @@ fn names_are_unique_and_quantities_complete() {
     assert_eq!(quantities.len(), ClosedLoop::QUANTITIES.len());
 }
 
-/// Angles within their turn; thrust, rotor speeds and the battery's figures not negative; nothing else is bounded but counts and statuses.
+/// Angles within their turn; thrust, rotor speeds, the battery's figures and a mass not negative; nothing else is bounded but counts and statuses.
 #[test]
 fn outputs_have_the_ranges_of_their_definitions() {
     use std::f64::consts::{FRAC_PI_2, PI};
@@ -183,7 +183,8 @@ fn outputs_have_the_ranges_of_their_definitions() {
             ("attitude.theta", _) => range(-FRAC_PI_2, FRAC_PI_2),
             ("battery.remaining", _) => range(0.0, 1.0),
             (name, Type::Real)
-                if ["thrust", "battery.voltage", "battery.current"].contains(&name)
+                if ["thrust", "battery.voltage", "battery.current", "controller.believed_mass"]
+                    .contains(&name)
                     || name.starts_with("rotor.speed[") =>
             {
                 (Some(Value::Real(0.0)), None)
