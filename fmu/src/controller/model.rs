@@ -140,6 +140,7 @@ impl Model for Controller {
         &figures::figures(),
         &inputs::GROUND,
         &outputs::BELIEF,
+        &parameters::ADDED_TABLE,
     ];
     const ARRAYS: &'static [&'static [Array]] = &[
         arrays::REFERENCE,

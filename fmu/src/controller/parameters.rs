@@ -69,3 +69,10 @@ const COUNT: usize = SELECTION.count::<ControllerParameters>();
 
 /// One variable for each of them.
 pub(super) const TABLE: [Variable<Controller>; COUNT] = table(SELECTION);
+
+/// What the controllers did not look at before: it comes last, so that no value reference has moved.
+const ADDED: Selection = Selection { of: &["airframe.rotor.fall_time_ratio"], without: &[] };
+const ADDED_COUNT: usize = ADDED.count::<ControllerParameters>();
+
+/// One variable for each of these.
+pub(super) const ADDED_TABLE: [Variable<Controller>; ADDED_COUNT] = table(ADDED);
