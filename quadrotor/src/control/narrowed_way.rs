@@ -117,8 +117,9 @@ impl NarrowedWay {
 /// l′ = (j − l w′)/w,  l″ = (s − 2 l′ w′ − l w″)/w
 /// ```
 ///
-/// Beside more thrust than in hover the rotors have less room to turn the vehicle. Whatever leans swings with its thrust: of the vertical motion, no more is followed than what turns the lean of the reference, as far as it
-/// is within the limit, with a share of the rate and of the acceleration.
+/// Beside more thrust than in hover the rotors have less room to turn the vehicle. Whatever leans swings with its thrust: of the vertical
+/// motion, no more is followed than what turns the lean of the reference, as far as it is within the limit, with a share of the rate and of
+/// the acceleration.
 fn asked(
     configuration: &Configuration,
     available_rad_s2: f64,
