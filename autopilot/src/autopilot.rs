@@ -116,21 +116,21 @@ impl Autopilot {
 
     /// Ticks after which something is to be done beside the flight.
     fn ticks_to_be_alone(&self) -> u64 {
-        let Context { vehicle, reboot_us, quiet_until_us, .. } = &self.context;
-        match reboot_us {
-            Some(_) => 1,
-            None if self.services.are_busy() => 1,
-            None => quiet_until_us.saturating_sub(vehicle.time_us()).div_ceil(TICK_US),
-        }
+        self.alone_until_us().saturating_sub(self.context.vehicle.time_us()).div_ceil(TICK_US)
+    }
+
+    /// Until when nothing is to be done beside the flight, µs since the boot; not later than now if there is something.
+    fn alone_until_us(&self) -> u64 {
+        let is_awaited = self.context.reboot_us.is_some() || self.services.are_busy();
+        if is_awaited { 0 } else { self.context.quiet_until_us }
     }
 
     /// Until when it need not be flown on, µs, because the vehicle [rests](Vehicle::rests_until_us) and no service waits for a time of its own:
     /// it does not matter when that is flown, if it is before anything is handed in. Regular messages that are due meanwhile leave later.
     pub fn rests_until_us(&self) -> Option<u64> {
-        let Context { vehicle, reboot_us, quiet_until_us, .. } = &self.context;
-        let is_asked =
-            reboot_us.is_some() || *quiet_until_us <= vehicle.time_us() || self.services.are_busy();
-        vehicle.rests_until_us().filter(|_| !is_asked).map(|end_us| self.before_us + end_us)
+        let vehicle = &self.context.vehicle;
+        let is_alone = self.alone_until_us() > vehicle.time_us();
+        vehicle.rests_until_us().filter(|_| is_alone).map(|end_us| self.before_us + end_us)
     }
 
     #[cfg(test)]

@@ -23,11 +23,24 @@ const COMMANDS: [(u64, MavCmd, [f32; 7]); 4] = [
     (15_004, MavCmd::MAV_CMD_NAV_TAKEOFF, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.0]),
 ];
 
+/// An autopilot like ArduPilot's.
+fn autopilot() -> Autopilot {
+    let settings = VehicleSettings::new(Identity::ArduPilot);
+    Autopilot::new(&settings, VEHICLE.0, Speed::Factor(1.0), &[LinkProfile::Ground], 0)
+        .expect("valid settings")
+}
+
+/// A command of the ground station reaches it.
+fn command(autopilot: &mut Autopilot, number: MavCmd, parameters: [f32; 7]) {
+    let message: Message = MavMessage::COMMAND_LONG(command_long(VEHICLE, number, parameters)).into();
+    let frame = Frame::encode(&message, Version::Two, 0, STATION).expect("a message of MAVLink 2");
+    let peer = PeerId { link: 0, number: 1 };
+    autopilot.receive(&Origin { peer, system: STATION.0, component: STATION.1 }, &frame);
+}
+
 /// Flies on to the end, at most so many ticks at once. Returns the vehicle, what it sent with the times, µs, and how often it was called.
 fn flown(most: u64) -> (Autopilot, Vec<(u64, u32)>, u64) {
-    let settings = VehicleSettings::new(Identity::ArduPilot);
-    let mut autopilot = Autopilot::new(&settings, VEHICLE.0, Speed::Factor(1.0), &[LinkProfile::Ground], 0)
-        .expect("valid settings");
+    let mut autopilot = autopilot();
     let (mut tick, mut calls, mut sent) = (0, 0, Vec::new());
     let mut fly_to = |autopilot: &mut Autopilot, end: u64| {
         while tick < end {
@@ -39,10 +52,7 @@ fn flown(most: u64) -> (Autopilot, Vec<(u64, u32)>, u64) {
     };
     for (at, number, parameters) in COMMANDS {
         fly_to(&mut autopilot, at);
-        let message: Message = MavMessage::COMMAND_LONG(command_long(VEHICLE, number, parameters)).into();
-        let frame = Frame::encode(&message, Version::Two, 0, STATION).expect("a message of MAVLink 2");
-        let peer = PeerId { link: 0, number: 1 };
-        autopilot.receive(&Origin { peer, system: STATION.0, component: STATION.1 }, &frame);
+        command(&mut autopilot, number, parameters);
     }
     fly_to(&mut autopilot, END);
     (autopilot, sent, calls)
@@ -72,28 +82,20 @@ fn services_act_at_the_same_times_however_many_ticks_are_flown_at_once() {
 /// Whoever flies it may let it rest until the end of a long tick, unless something was asked of it or it is about to boot.
 #[test]
 fn it_need_not_be_flown_while_it_rests_and_nothing_is_asked() {
-    let settings = VehicleSettings::new(Identity::ArduPilot);
-    let mut autopilot = Autopilot::new(&settings, VEHICLE.0, Speed::Factor(1.0), &[LinkProfile::Ground], 0)
-        .expect("valid settings");
+    let mut autopilot = autopilot();
     let fly_to = |autopilot: &mut Autopilot, tick: u64| {
         while autopilot.time_us() < 1000 * tick {
             autopilot.fly(tick - autopilot.time_us() / 1000).expect("it stands");
         }
     };
-    let hand_in = |autopilot: &mut Autopilot, number, param1: f32| {
-        let parameters = [param1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        let message: Message = MavMessage::COMMAND_LONG(command_long(VEHICLE, number, parameters)).into();
-        let frame = Frame::encode(&message, Version::Two, 0, STATION).expect("a message of MAVLink 2");
-        let peer = PeerId { link: 0, number: 1 };
-        autopilot.receive(&Origin { peer, system: STATION.0, component: STATION.1 }, &frame);
-    };
+    let with = |first: f32| [first, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     fly_to(&mut autopilot, 12_001);
     assert_eq!(autopilot.rests_until_us(), Some(12_005_000));
-    hand_in(&mut autopilot, MavCmd::MAV_CMD_REQUEST_MESSAGE, AUTOPILOT_VERSION);
+    command(&mut autopilot, MavCmd::MAV_CMD_REQUEST_MESSAGE, with(AUTOPILOT_VERSION));
     assert_eq!(autopilot.rests_until_us(), None, "an answer may be due");
     fly_to(&mut autopilot, 12_002);
     assert_eq!(autopilot.rests_until_us(), Some(12_005_000));
-    hand_in(&mut autopilot, MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0);
+    command(&mut autopilot, MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, with(1.0));
     fly_to(&mut autopilot, 12_003);
     assert_eq!(autopilot.rests_until_us(), None, "it is about to boot");
     fly_to(&mut autopilot, 20_002);

@@ -11,6 +11,7 @@ pub(crate) mod control_error;
 pub(crate) mod control_inputs;
 pub(crate) mod control_loop;
 pub(crate) mod control_state;
+pub(crate) mod demand;
 pub(crate) mod estimator;
 pub(crate) mod euler_equation;
 pub(crate) mod flat_attitude;

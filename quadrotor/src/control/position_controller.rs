@@ -270,8 +270,11 @@ fn foreseen(
     });
     let beside = ASKED[..FADED].iter().filter_map(|sample| asked(*sample));
     let all = ASKED.into_iter().map(ahead).chain(beside).chain([*reference]);
-    let [is_held, is_narrow] = [!reference.is_narrow, reference.is_narrow].map(|so| reference.is_bent && so);
-    let asked = Asked { is_held, is_narrow, ..Asked::default() };
+    let asked = Asked {
+        is_held: reference.is_bent && !reference.is_narrow,
+        is_narrow: reference.is_bent && reference.is_narrow,
+        ..Asked::default()
+    };
     (moved, all.fold(asked, |most, then| asked_by(&most, &then)))
 }
 

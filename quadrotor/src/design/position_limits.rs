@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use lmpc::SignalLimit;
 use nalgebra::Vector2;
 
-use crate::control::narrowed_way::FOLLOWED;
+use crate::control::demand::FOLLOWED;
 use crate::design::limited_samples::{in_time, one_in_time};
 use crate::{ControllerKind, GRAVITY_M_S2, Limits};
 

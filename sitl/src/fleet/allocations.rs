@@ -3,25 +3,16 @@
 use std::net::UdpSocket;
 use std::time::Instant;
 
-use autopilot::codec::{Frame, Version, command_long};
-use autopilot::envelope::{Origin, PeerId};
 use clap::Parser;
-use mavlink::dialects::ardupilotmega::{MavCmd, MavMessage};
+use mavlink::dialects::ardupilotmega::MavCmd;
 use vehicle::Mode;
 
 use super::Fleet;
+use super::station::command;
 use crate::configuration::{Arguments, Settings};
 
 /// Ticks between two looks at the links.
 const LOOK: u64 = 10;
-
-fn command(fleet: &mut Fleet, now: Instant, command: MavCmd, param1: f32, param7: f32) {
-    let parameters = [param1, 0.0, 0.0, 0.0, 0.0, 0.0, param7];
-    let message = MavMessage::COMMAND_LONG(command_long((1, 1), command, parameters));
-    let frame = Frame::encode(&message.into(), Version::Two, 0, (255, 190)).expect("MAVLink 2");
-    let origin = Origin { peer: PeerId { link: 0, number: 1 }, system: 255, component: 190 };
-    fleet.attend(0, now).expect("a vehicle").autopilot.receive(&origin, &frame);
-}
 
 fn fly(fleet: &mut Fleet, ticks: u64, now: Instant) {
     for tick in 0..ticks {
@@ -43,8 +34,8 @@ fn a_hovering_vehicle_flies_and_tells_without_allocating() {
     let mut fleet = Fleet::open(&settings, 0).expect("free ports");
     let now = Instant::now();
     fleet.receive(now);
-    command(&mut fleet, now, MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
-    command(&mut fleet, now, MavCmd::MAV_CMD_NAV_TAKEOFF, 0.0, f32::NAN);
+    fleet.take_in(0, &command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0), now);
+    fleet.take_in(0, &command(MavCmd::MAV_CMD_NAV_TAKEOFF, 0.0, f32::NAN), now);
     fly(&mut fleet, 30_000, now);
     let vehicle = fleet.members()[0].autopilot().vehicle();
     assert_eq!((vehicle.mode(), vehicle.is_armed()), (Mode::Hold, true));

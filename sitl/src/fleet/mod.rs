@@ -25,6 +25,8 @@ mod reception;
 mod resting;
 mod roster;
 mod signing_keeper;
+#[cfg(test)]
+mod station;
 
 pub use clock::Clock;
 pub use lockstep::{LockstepPhase, LockstepSettings};

@@ -3,8 +3,6 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use autopilot::codec::{Frame, Version, command_long};
-use autopilot::envelope::{Origin, PeerId};
 use clap::Parser;
 use mavlink::dialects::ardupilotmega::{
     HEARTBEAT_DATA, MavCmd, MavMessage, MavParamType, MavType, PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA,
@@ -12,11 +10,11 @@ use mavlink::dialects::ardupilotmega::{
 use vehicle::parameters::Speed;
 use vehicle::{Mode, TICK_US};
 
+use super::station::{command, received};
 use super::{Clock, Fleet};
 use crate::configuration::{Arguments, Settings};
 use crate::link::Received;
 
-const STATION: Origin = Origin { peer: PeerId { link: 0, number: 1 }, system: 255, component: 190 };
 /// Ticks after which it hovers.
 const HOVERS: u64 = 20_000;
 const END: u64 = 30_000;
@@ -79,18 +77,15 @@ impl Bench {
         }
     }
 
-    fn hand_in(&mut self, message: MavMessage) {
-        let frame = Frame::encode(&message.into(), Version::Two, 0, (STATION.system, STATION.component));
-        let received = Received { origin: STATION, frame: frame.expect("MAVLink 2") };
+    fn hand_in(&mut self, received: &Received) {
         let now = self.now();
-        self.fleet.distribute(0, &received, now);
+        self.fleet.distribute(0, received, now);
         // That a ground station is heard is told with the next look, which is now.
         self.fleet.keep_links_alive(now);
     }
 
-    fn command(&mut self, command: MavCmd, param1: f32, param7: f32) {
-        let parameters = [param1, 0.0, 0.0, 0.0, 0.0, 0.0, param7];
-        self.hand_in(MavMessage::COMMAND_LONG(command_long((1, 1), command, parameters)));
+    fn command(&mut self, number: MavCmd, param1: f32, param7: f32) {
+        self.hand_in(&command(number, param1, param7));
     }
 
     fn take_off(&mut self) {
@@ -107,18 +102,21 @@ impl Bench {
     }
 }
 
-fn heartbeat() -> MavMessage {
-    MavMessage::HEARTBEAT(HEARTBEAT_DATA { mavtype: MavType::MAV_TYPE_GCS, ..HEARTBEAT_DATA::default() })
+fn heartbeat() -> Received {
+    received(MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+        mavtype: MavType::MAV_TYPE_GCS,
+        ..HEARTBEAT_DATA::default()
+    }))
 }
 
-fn parameter(name: &str, value: f32) -> MavMessage {
-    MavMessage::PARAM_SET(PARAM_SET_DATA {
+fn parameter(name: &str, value: f32) -> Received {
+    received(MavMessage::PARAM_SET(PARAM_SET_DATA {
         param_value: value,
         target_system: 1,
         target_component: 1,
         param_id: name.into(),
         param_type: MavParamType::MAV_PARAM_TYPE_REAL32,
-    })
+    }))
 }
 
 /// Flies, with messages in the middle of long ticks: a heartbeat, a parameter, a landing, a reboot. Returns what was recorded of
@@ -129,9 +127,9 @@ fn flown(course: Course, folder: &Path) -> (String, Vec<(u64, Vec<u8>)>) {
         Bench::new(course, &format!("--record {} --tlog {}", record.display(), traffic.display()));
     bench.take_off();
     bench.go_on(HOVERS + 1_002);
-    bench.hand_in(heartbeat());
+    bench.hand_in(&heartbeat());
     bench.go_on(HOVERS + 1_501);
-    bench.hand_in(parameter("MPC_XY_VEL_MAX", 7.0));
+    bench.hand_in(&parameter("MPC_XY_VEL_MAX", 7.0));
     bench.go_on(HOVERS + 3_004);
     bench.command(MavCmd::MAV_CMD_NAV_LAND, 0.0, 0.0);
     bench.go_on(END - 1_498);
@@ -196,7 +194,7 @@ fn a_vehicle_that_rests_is_not_flown_while_nobody_asks() {
     assert_eq!(bench.times_ms(), (HOVERS + 999, HOVERS + 999));
     // A message finds it there, too, and it is awake until the links have been looked at.
     bench.go_on(HOVERS + 1_002);
-    bench.hand_in(heartbeat());
+    bench.hand_in(&heartbeat());
     assert_eq!(bench.times_ms(), (HOVERS + 1_002, HOVERS + 1_002));
     let times = [1, 2, 3, 4].map(|ticks| {
         bench.go_on(HOVERS + 1_002 + ticks);
@@ -216,13 +214,13 @@ fn nobody_rests_behind_a_clock_that_is_slow_or_ends() {
     let mut bench = Bench::new(Course::Clock(1), "");
     bench.go_on(1_003);
     assert_eq!(bench.times_ms(), (1_000, 1_003), "on the ground");
-    bench.hand_in(parameter("SIM_SPEEDUP", 0.0));
+    bench.hand_in(&parameter("SIM_SPEEDUP", 0.0));
     bench.go_on(1_010);
     assert_eq!(bench.times_ms(), (1_003, 1_003), "paused");
     assert!(bench.clock.step(2 * TICK_US));
     bench.go_on(1_011);
     assert_eq!(bench.times_ms(), (1_005, 1_005), "a step");
-    bench.hand_in(parameter("SIM_SPEEDUP", 0.5));
+    bench.hand_in(&parameter("SIM_SPEEDUP", 0.5));
     for tick in 1_012..1_030 {
         bench.go_on(tick);
         assert_eq!(bench.times_ms().0, bench.times_ms().1, "slow");
@@ -240,7 +238,7 @@ fn a_vehicle_is_awake_while_it_answers() {
     let mut bench = Bench::new(Course::Clock(1), "");
     bench.go_on(1_002);
     let list = PARAM_REQUEST_LIST_DATA { target_system: 1, target_component: 1 };
-    bench.hand_in(MavMessage::PARAM_REQUEST_LIST(list));
+    bench.hand_in(&received(MavMessage::PARAM_REQUEST_LIST(list)));
     let mut awake = 0;
     for tick in 1_003..3_000 {
         let answers = bench.fleet.members()[0].autopilot().is_answering();

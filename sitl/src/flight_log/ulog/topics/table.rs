@@ -121,7 +121,8 @@ pub static TOPICS: &[Topic] = &[
     topic(
         "lmpc_status",
         "float[3] tracking_error_m;float yaw_error_rad;float[2] tilt_reference_rad;float thrust_n;float[3] torque_n_m;\
-         float[4] rotor_speed_rad_s;float believed_mass_kg;float[3] believed_drag_n_s_m;uint32_t altitude_iterations;uint32_t position_iterations;\
+         float[4] rotor_speed_rad_s;float believed_mass_kg;float[3] believed_drag_n_s_m;\
+         uint32_t altitude_iterations;uint32_t position_iterations;\
          uint32_t attitude_iterations;uint32_t altitude_active_constraints;uint32_t position_active_constraints;\
          uint32_t attitude_active_constraints;uint8_t altitude_status;uint8_t position_status;uint8_t attitude_status;\
          uint8_t steering;",
