@@ -247,6 +247,8 @@ impl<const N: usize, T: Precision> ActiveSet<N, T> {
     }
 
     /// The point nearest to z where Vᵀz = b: (I − Q Qᵀ) z + Q R⁻ᵀ b.
+    // One copy for all who call: once or twice in a search, and long when unrolled.
+    #[inline(never)]
     pub(crate) fn nearest(&self, z: &Start<N, T>) -> SVector<T, N> {
         let mut nearest = SVector::zeros();
         if let Start::At(z) = z

@@ -32,6 +32,15 @@ pub(crate) fn subtract_scaled<T: Precision>(a: &mut [T], b: &[T], t: T) {
     }
 }
 
+/// sum ← sum + A x, column by column, with the elements of A in this order.
+// One copy for all sizes: with known ones it would be unrolled, however long they are.
+#[inline(never)]
+pub(crate) fn add_product<T: Precision>(sum: &mut [T], matrix: &[T], x: &[T]) {
+    for (column, factor) in matrix.chunks_exact(sum.len()).zip(x) {
+        subtract_scaled(sum, column, -*factor);
+    }
+}
+
 /// Turns two vectors towards each other: a ← a cos + b sin, b ← b cos − a sin.
 #[inline]
 pub(crate) fn turn<T: Precision>(a: &mut [T], b: &mut [T], cosine: T, sine: T) {

@@ -54,6 +54,29 @@ pub(crate) struct PlanCoordinates {
     pub(crate) by_z: DMatrix<f64>,
 }
 
+impl PlanCoordinates {
+    /// Those of a design.
+    ///
+    /// # Errors
+    /// [`DesignError::NotPositiveDefinite`]: S_ηη.
+    pub(crate) fn of(design: &StabilizedDesign) -> Result<Self, DesignError> {
+        let states = design.model().states();
+        let terms = design.cost().nrows() - states;
+        let hessian = design.cost().view((states, states), (terms, terms)).into_owned();
+        let name = "S_ηη";
+        let factor = hessian.cholesky().ok_or(DesignError::NotPositiveDefinite { name })?;
+        // L⁻¹
+        let inverse = factor
+            .l()
+            .solve_lower_triangular(&DMatrix::identity(terms, terms))
+            .ok_or(DesignError::NotPositiveDefinite { name })?;
+        // S_ηη⁻¹ = L⁻ᵀ L⁻¹
+        let by_z = inverse.transpose();
+        let unlimited = -(&by_z * (&inverse * design.cost().view((states, 0), (terms, states))));
+        Ok(Self { unlimited, by_z })
+    }
+}
+
 /// The components of a limit at one of its samples.
 struct SignalAt {
     /// Of \[Δx_m; y − r\], under the plan without limits.
@@ -292,13 +315,13 @@ impl<T: Precision> LimitedSignals<T> {
         self.limits.iter().all(|limit| limit.is_surely_kept(sample, input))
     }
 
-    /// Each signal of the plan without limits, `input` being u_r(k) + v(k−1). S must be their number or more.
-    pub(crate) fn unlimited<const N: usize, const P: usize, const Q: usize, const S: usize>(
+    /// Writes each signal of the plan without limits, `input` being u_r(k) + v(k−1), to where there is room for all of them.
+    pub(crate) fn write_unlimited<const N: usize, const P: usize, const Q: usize>(
         &self,
         sample: &Sample<'_, N, P, Q, T>,
         input: &SVector<T, P>,
-    ) -> [T; S] {
-        let mut known = [T::zero(); S];
+        known: &mut [T],
+    ) {
         for limit in &self.limits {
             let held = limit.signal(sample.measured.as_slice(), input.as_slice());
             let moved = sample.moved.get(limit.first_moved..).unwrap_or_default();
@@ -311,9 +334,8 @@ impl<T: Precision> LimitedSignals<T> {
                 }
             }
         }
-        self.of_increment.add_product(sample.increment.as_slice(), &mut known);
-        self.of_error.add_product(sample.error.as_slice(), &mut known);
-        known
+        self.of_increment.add_product(sample.increment.as_slice(), known);
+        self.of_error.add_product(sample.error.as_slice(), known);
     }
 
     /// Sets the signals to those at z.
@@ -438,7 +460,8 @@ mod tests {
             let input = Vector1::new(input);
             let surely = signals.are_surely_kept(&sample, &input);
             prop_assert!(surely || !far);
-            let values: [f64; 6] = signals.unlimited(&sample, &input);
+            let mut values = [0.0; 6];
+            signals.write_unlimited(&sample, &input, &mut values);
             let kept = signals.limits().iter().all(|limit| {
                 (0..limit.samples).all(|at| {
                     let sides = limit.directions.iter().zip(limit.bounds(&upper));

@@ -1,6 +1,6 @@
 //! Stabilized Laguerre MPC under limits, at run time.
 
-use nalgebra::{DMatrix, SMatrix, SVector};
+use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
 use crate::active_set::{ActiveSet, Start};
@@ -75,20 +75,8 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
                 actual: (terms + 1, terms + 1),
             });
         }
-        let hessian = design.cost().view((states, states), (terms, terms)).into_owned();
-        let name = "S_ηη";
-        let factor = hessian.cholesky().ok_or(DesignError::NotPositiveDefinite { name })?;
-        // L⁻¹
-        let inverse = factor
-            .l()
-            .solve_lower_triangular(&DMatrix::identity(terms, terms))
-            .ok_or(DesignError::NotPositiveDefinite { name })?;
-        // S_ηη⁻¹ = L⁻ᵀ L⁻¹
-        let by_z = inverse.transpose();
-        let unlimited = -(&by_z * (&inverse * design.cost().view((states, 0), (terms, states))));
-        let first_move = design.plan().move_of.columns(states, terms) * &by_z;
-        let coordinates = PlanCoordinates { unlimited, by_z };
-
+        let coordinates = PlanCoordinates::of(design)?;
+        let first_move = design.plan().move_of.columns(states, terms) * &coordinates.by_z;
         let slack_unit = 1.0 / libm::sqrt(slack_cost);
         let controller = Self {
             unconstrained: StateFeedback::new(design.gain())?,
@@ -158,26 +146,50 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, T: Precisio
         normal * place.scale
     }
 
-    /// What limits make of the plan without them, with room for S signals; `None` when it keeps them.
-    fn limited<const W: usize, const K: usize, const S: usize>(
+    /// What limits make of the plan without them; `None` when it keeps them.
+    fn limited<const W: usize, const K: usize>(
         &self,
         state: &mut ControllerState<N, P, W, T, K>,
         sample: &Sample<'_, N, P, Q, T>,
     ) -> Option<Decision<P, T>> {
         let input = sample.input_reference + state.feedback();
-        let warm_start = state.warm_start.strict();
         // Far from all limits, as most samples are, their signals need not be known one by one.
-        if warm_start.is_empty() && self.signals.are_surely_kept(sample, &input) {
+        if state.warm_start.strict().is_empty() && self.signals.are_surely_kept(sample, &input) {
             return None;
         }
-        let mut program = self.program::<S>(sample, &input);
+        if self.signals.count() <= FEW_SIGNALS {
+            self.planned(
+                [&mut [T::zero(); FEW_SIGNALS], &mut [T::zero(); FEW_SIGNALS]],
+                state,
+                sample,
+                &input,
+            )
+        } else {
+            self.planned([&mut [T::zero(); SIGNALS], &mut [T::zero(); SIGNALS]], state, sample, &input)
+        }
+    }
+
+    /// The same with the signals one by one, with room for those of the plan without limits and for those of a plan with them.
+    // One copy for rooms of any size.
+    #[inline(never)]
+    fn planned<const W: usize, const K: usize>(
+        &self,
+        [unlimited, signals]: [&mut [T]; 2],
+        state: &mut ControllerState<N, P, W, T, K>,
+        sample: &Sample<'_, N, P, Q, T>,
+        input: &SVector<T, P>,
+    ) -> Option<Decision<P, T>> {
+        let warm_start = state.warm_start.strict();
+        self.signals.write_unlimited(sample, input, unlimited);
+        let mut program = self.program(sample, unlimited, signals);
         if !program.is_finite() {
             return None;
         }
-        if warm_start.is_empty() && program.worst(&program.unlimited, T::zero(), &[]).is_none() {
+        if warm_start.is_empty() && program.worst(program.unlimited, T::zero(), &[]).is_none() {
             return None;
         }
-        let found = if self.unknowns <= K {
+        // E ≥ unknowns: where there is surely room, the other search is not compiled.
+        let found = if E <= K || self.unknowns <= K {
             program.search(&mut state.kept.0, warm_start)
         } else {
             program.search(&mut ActiveSet::<E, T>::empty(), warm_start)
@@ -190,11 +202,12 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, T: Precisio
     }
 
     /// The program of one sample.
-    fn program<'a, const S: usize>(
+    fn program<'a>(
         &'a self,
         sample: &'a Sample<'_, N, P, Q, T>,
-        input: &SVector<T, P>,
-    ) -> Program<'a, N, P, Q, E, S, T> {
+        unlimited: &'a [T],
+        signals: &'a mut [T],
+    ) -> Program<'a, N, P, Q, E, T> {
         let limits = self.signals.limits();
         let least_of = |index: usize| match limits.get(index) {
             // Those of one component are looked at without it.
@@ -205,8 +218,8 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, T: Precisio
             controller: self,
             upper: sample.upper,
             least: core::array::from_fn(least_of),
-            unlimited: self.signals.unlimited(sample, input),
-            signals: [T::zero(); S],
+            unlimited,
+            signals,
         }
     }
 }
@@ -219,20 +232,20 @@ struct Found<const P: usize, T> {
     active: usize,
 }
 
-/// The limits of one sample, as constraints of z, with room for S signals.
-struct Program<'a, const N: usize, const P: usize, const Q: usize, const E: usize, const S: usize, T> {
+/// The limits of one sample, as constraints of z.
+struct Program<'a, const N: usize, const P: usize, const Q: usize, const E: usize, T> {
     controller: &'a StabilizedMpc<N, P, Q, E, T>,
     upper: &'a [T],
     /// The least bound of each of the first limits.
     least: [T; LEAST],
     /// The signals of the plan without limits, z = 0.
-    unlimited: [T; S],
+    unlimited: &'a [T],
     /// The signals at the z that was looked at last.
-    signals: [T; S],
+    signals: &'a mut [T],
 }
 
-impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: usize, T: Precision>
-    Program<'_, N, P, Q, E, S, T>
+impl<const N: usize, const P: usize, const Q: usize, const E: usize, T: Precision>
+    Program<'_, N, P, Q, E, T>
 {
     /// Whether its numbers can be calculated with.
     fn is_finite(&self) -> bool {
@@ -272,7 +285,7 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: us
     }
 
     /// The constraint that some signals violate most under a slack σ, by more than rounding, among those that are not active.
-    fn worst(&self, signals: &[T; S], slack: T, active: &[usize]) -> Option<usize> {
+    fn worst(&self, signals: &[T], slack: T, active: &[usize]) -> Option<usize> {
         let placed = &self.controller.signals;
         let mut worst = Worst { scales: placed.scales(), active, constraint: None, room: T::zero() };
         for (index, limit) in placed.limits().iter().enumerate() {
@@ -283,15 +296,8 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, const S: us
     }
 }
 
-impl<
-    const N: usize,
-    const P: usize,
-    const Q: usize,
-    const E: usize,
-    const S: usize,
-    const D: usize,
-    T: Precision,
-> Constraints<D, T> for Program<'_, N, P, Q, E, S, T>
+impl<const N: usize, const P: usize, const Q: usize, const E: usize, const D: usize, T: Precision>
+    Constraints<D, T> for Program<'_, N, P, Q, E, T>
 {
     fn unknowns(&self) -> usize {
         self.controller.unknowns
@@ -313,15 +319,15 @@ impl<
         let signals = &self.controller.signals;
         let place = signals.place(constraint);
         let unlimited =
-            along(&place.limit.directions[place.direction], &place.limit.at(place.sample, &self.unlimited));
+            along(&place.limit.directions[place.direction], &place.limit.at(place.sample, self.unlimited));
         let upper = place.limit.bounds(self.upper).get(place.direction).copied().unwrap_or(T::INFINITY);
         (upper - unlimited) * place.scale
     }
 
     fn most_violated(&mut self, z: &SVector<T, D>, active: &[usize]) -> Option<usize> {
         let controller = self.controller;
-        controller.signals.set_at(&self.unlimited, z.as_slice(), &mut self.signals);
-        self.worst(&self.signals, controller.slack_of(z), active)
+        controller.signals.set_at(self.unlimited, z.as_slice(), self.signals);
+        self.worst(self.signals, controller.slack_of(z), active)
     }
 }
 
@@ -340,12 +346,7 @@ impl<
         state: &mut ControllerState<N, P, W, T, K>,
         sample: &Sample<'_, N, P, Q, T>,
     ) -> Step<P, T> {
-        let decision = if self.signals.count() <= FEW_SIGNALS {
-            self.limited::<W, K, FEW_SIGNALS>(state, sample)
-        } else {
-            self.limited::<W, K, SIGNALS>(state, sample)
-        };
-        match decision {
+        match self.limited(state, sample) {
             Some(decision) => state.take(sample, &decision),
             None => self.unconstrained.step(state, sample),
         }

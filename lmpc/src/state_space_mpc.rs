@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::bounds::Bounds;
 use crate::controller_state::Decision;
+use crate::dense::add_product;
 use crate::limit_row::limit_rows;
 use crate::moves_walk::MovesWalk;
 use crate::precision::converted;
@@ -121,10 +122,13 @@ impl<
         let input = sample.input_reference + feedback;
         let reference_step = sample.input_reference - state.input_reference();
 
-        let mut f = self.gradient_state * sample.deviation + self.gradient_input * driving;
+        let mut f = SVector::<T, E>::zeros();
+        let sum = f.as_mut_slice();
+        add_product(sum, self.gradient_state.as_slice(), sample.deviation.as_slice());
+        add_product(sum, self.gradient_input.as_slice(), driving.as_slice());
         for (index, gradient) in self.gradient_reference.iter().enumerate() {
             if let Some(reference) = sample.preview.get(index).or(sample.preview.last()) {
-                f -= gradient * reference;
+                add_product(sum, gradient.as_slice(), (-reference).as_slice());
             }
         }
         let rooms =
