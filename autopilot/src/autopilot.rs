@@ -20,6 +20,9 @@ use crate::parameters::Parameters;
 use crate::service::registry::Registry;
 use crate::service::{heartbeat, parameter, traffic};
 
+/// How long a vehicle at rest is left alone when its long tick ends, µs, nine more of them: so much later it tells what it decides by itself.
+const LONGER_REST_US: u64 = 45_000;
+
 /// A vehicle with its services.
 #[derive(Debug)]
 pub struct Autopilot {
@@ -126,11 +129,14 @@ impl Autopilot {
     }
 
     /// Until when it need not be flown on, µs, because the vehicle [rests](Vehicle::rests_until_us) and no service waits for a time of its own:
-    /// it does not matter when that is flown, if it is before anything is handed in. Regular messages that are due meanwhile leave later.
+    /// it does not matter when that is flown, if it is before anything is handed in. It ends when the next regular message is due; those that
+    /// are due before the long tick ends leave with its end. What the vehicle decides by itself meanwhile is told later, by 50 ms at most.
     pub fn rests_until_us(&self) -> Option<u64> {
-        let vehicle = &self.context.vehicle;
-        let is_alone = self.alone_until_us() > vehicle.time_us();
-        vehicle.rests_until_us().filter(|_| is_alone).map(|end_us| self.before_us + end_us)
+        let now_us = self.context.vehicle.time_us();
+        let alone_until_us = Some(self.alone_until_us()).filter(|until_us| *until_us > now_us)?;
+        let end_us = self.context.vehicle.rests_until_us()?;
+        let until_us = alone_until_us.clamp(end_us, end_us + LONGER_REST_US).next_multiple_of(TICK_US);
+        Some(self.before_us + until_us)
     }
 
     #[cfg(test)]

@@ -79,7 +79,7 @@ fn services_act_at_the_same_times_however_many_ticks_are_flown_at_once() {
     }
 }
 
-/// Whoever flies it may let it rest until the end of a long tick, unless something was asked of it or it is about to boot.
+/// Whoever flies it may let it rest for ten long ticks, unless a message is due, something was asked of it, or it is about to boot.
 #[test]
 fn it_need_not_be_flown_while_it_rests_and_nothing_is_asked() {
     let mut autopilot = autopilot();
@@ -90,15 +90,33 @@ fn it_need_not_be_flown_while_it_rests_and_nothing_is_asked() {
     };
     let with = |first: f32| [first, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     fly_to(&mut autopilot, 12_001);
-    assert_eq!(autopilot.rests_until_us(), Some(12_005_000));
+    assert_eq!(autopilot.rests_until_us(), Some(12_050_000));
     command(&mut autopilot, MavCmd::MAV_CMD_REQUEST_MESSAGE, with(AUTOPILOT_VERSION));
     assert_eq!(autopilot.rests_until_us(), None, "an answer may be due");
     fly_to(&mut autopilot, 12_002);
-    assert_eq!(autopilot.rests_until_us(), Some(12_005_000));
+    assert_eq!(autopilot.rests_until_us(), Some(12_050_000));
     command(&mut autopilot, MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, with(1.0));
     fly_to(&mut autopilot, 12_003);
     assert_eq!(autopilot.rests_until_us(), None, "it is about to boot");
     fly_to(&mut autopilot, 20_002);
     // Long ticks are counted from the boot.
     assert_eq!((autopilot.boots(), autopilot.rests_until_us()), (2, Some(20_007_000)));
+}
+
+/// Regular messages do not wait for the end of a rest: at most for that of a long tick.
+#[test]
+fn a_rest_ends_when_a_message_is_due() {
+    let mut autopilot = autopilot();
+    let mut messages = 0;
+    while autopilot.time_us() < 20_000_000 {
+        let end_us = autopilot.rests_until_us().unwrap_or(autopilot.time_us() + 1000);
+        while autopilot.time_us() < end_us {
+            autopilot.fly((end_us - autopilot.time_us()) / 1000).expect("it stands");
+            let now_us = autopilot.time_us();
+            let sent = autopilot.take_outgoing().count();
+            assert!(sent == 0 || end_us - now_us < 5_000, "{sent} at {now_us} are told at {end_us} µs");
+            messages += sent;
+        }
+    }
+    assert!(messages > 100, "{messages}");
 }

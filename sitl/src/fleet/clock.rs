@@ -129,8 +129,8 @@ impl Clock {
         }
     }
 
-    /// Whether those that rest may be a few milliseconds of simulation time behind it: hardly more of the wall clock, for their messages
-    /// leave that much later. As fast as possible, they fly that far at once.
+    /// Whether those that rest may be some milliseconds of simulation time behind it: hardly more of the wall clock, for they tell of themselves
+    /// that much later. As fast as possible, they fly that far at once.
     fn is_patient(&self) -> bool {
         matches!(self.speed, Speed::Factor(factor) if factor >= 1.0)
     }

@@ -1,10 +1,11 @@
-//! Vehicles follow their clocks. One that rests may be behind its clock, by a long tick at most: it is flown on before anything is handed in
-//! to it and before anybody looks at it, so that all is as if it had been flown each tick, and only its regular messages leave later.
+//! Vehicles follow their clocks. One that rests may be behind its clock, until a regular message is due or by ten long ticks: it is flown on
+//! before anything is handed in to it and before anybody looks at it, so that all is as if it had been flown each tick, and only what it
+//! tells leaves later.
 //!
 //! ```text
-//!   clock, ms          10    11    12    13    14    15
-//!   nobody asks        ├─────────────────────────────┤   flown at 15, at once
-//!   a message at 12    ├───────────┼─────┼───────────┤   flown to 12 before it takes effect, then at 13, and at 15
+//!   clock, ms          10    15    20    25    30    35
+//!   nobody asks        ├─────────────────────────────┤   flown at 35, when a message is due: five long ticks
+//!   a message at 22    ├─────────────┼┼──────────────┤   flown to 22 before it takes effect, then at 23, and at 35
 //! ```
 
 use std::ops::Range;

@@ -18,6 +18,8 @@ use crate::link::Received;
 /// Ticks after which it hovers.
 const HOVERS: u64 = 20_000;
 const END: u64 = 30_000;
+/// Least number of ticks that nobody rests behind.
+const MOST_BEHIND: u64 = 50;
 
 /// How simulation time goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -184,10 +186,15 @@ fn what_comes_in_the_middle_of_a_long_tick_is_handled_at_its_time() {
 fn a_vehicle_that_rests_is_not_flown_while_nobody_asks() {
     let mut bench = Bench::new(Course::Clock(1), "");
     bench.take_off();
+    let (mut looks, mut latest) = (0, HOVERS);
     for tick in HOVERS + 1..HOVERS + 1_000 {
         bench.go_on(tick);
-        assert_eq!(bench.times_ms(), (tick - tick % 5, tick));
+        let (time, clock) = bench.times_ms();
+        assert!(clock == tick && (time..time + MOST_BEHIND).contains(&tick), "at {time} of {tick}");
+        looks += u64::from(time > latest);
+        latest = time;
     }
+    assert!((20..100).contains(&looks), "flown {looks} times in a second");
     // Whoever looks at it sees it where its clock is.
     let now = bench.now();
     bench.fleet.catch_up_all(now);
@@ -196,11 +203,10 @@ fn a_vehicle_that_rests_is_not_flown_while_nobody_asks() {
     bench.go_on(HOVERS + 1_002);
     bench.hand_in(&heartbeat());
     assert_eq!(bench.times_ms(), (HOVERS + 1_002, HOVERS + 1_002));
-    let times = [1, 2, 3, 4].map(|ticks| {
-        bench.go_on(HOVERS + 1_002 + ticks);
-        bench.times_ms().0 - HOVERS
-    });
-    assert_eq!(times, [1_003, 1_004, 1_005, 1_005]);
+    bench.go_on(HOVERS + 1_003);
+    assert_eq!(bench.times_ms(), (HOVERS + 1_003, HOVERS + 1_003));
+    bench.go_on(HOVERS + 1_006);
+    assert_eq!(bench.times_ms(), (HOVERS + 1_004, HOVERS + 1_006), "at rest again");
     // What flies follows its clock.
     bench.command(MavCmd::MAV_CMD_NAV_LAND, 0.0, 0.0);
     for tick in HOVERS + 1_007..HOVERS + 1_020 {
@@ -249,5 +255,5 @@ fn a_vehicle_is_awake_while_it_answers() {
         }
     }
     assert!(awake > 100, "a list is a long answer: {awake} ms");
-    assert_eq!(bench.times_ms(), (2_995, 2_999), "at rest again");
+    assert!((2_999 - MOST_BEHIND..2_999).contains(&bench.times_ms().0), "at rest again");
 }
