@@ -12,7 +12,7 @@ use crate::{DesignError, validate};
 /// All eigenvalues of a square matrix, in the order in which the Schur form has them.
 ///
 /// # Errors
-/// [`DesignError::Dimension`] unless it is square, [`DesignError::NotFinite`],
+/// [`DesignError::Dimension`] unless it is square, [`DesignError::ElementNotFinite`],
 /// [`DesignError::Eigenvalues`] when the iteration does not converge.
 pub fn eigenvalues(name: &'static str, matrix: &DMatrix<f64>) -> Result<Vec<Complex<f64>>, DesignError> {
     let size = matrix.nrows();

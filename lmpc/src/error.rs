@@ -55,11 +55,23 @@ pub enum DesignError {
         /// Given (rows, columns).
         actual: (usize, usize),
     },
-    /// A matrix or number contains NaN or an infinity.
+    /// What follows from the given numbers contains NaN or an infinity.
     #[error("{name} contains a value that is not finite")]
     NotFinite {
         /// The matrix or number.
         name: &'static str,
+    },
+    /// A given matrix contains NaN or an infinity.
+    #[error("{name} contains a value that is not finite: element ({row}, {column}) is {value}")]
+    ElementNotFinite {
+        /// The matrix.
+        name: &'static str,
+        /// Row of the first such element, counted from 0.
+        row: usize,
+        /// Its column.
+        column: usize,
+        /// The element.
+        value: f64,
     },
     /// A matrix must be symmetric and is not.
     #[error(
@@ -77,10 +89,18 @@ pub enum DesignError {
         difference: f64,
     },
     /// R must be positive definite.
-    #[error("{name} is not positive definite")]
+    #[error("{name} is not positive definite: it has the eigenvalue {}", Shown(*eigenvalue))]
     NotPositiveDefinite {
         /// The matrix.
         name: &'static str,
+        /// Its smallest eigenvalue.
+        eigenvalue: f64,
+    },
+    /// A slack must cost something, so that limits give way only where they have to.
+    #[error("cost of the slack c = {value} is outside (0, ∞)")]
+    SlackCost {
+        /// Given cost.
+        value: f64,
     },
     /// Q must be positive semidefinite.
     #[error("{name} is not positive semidefinite: it has the eigenvalue {}", Shown(*eigenvalue))]

@@ -37,7 +37,7 @@ impl KalmanDesign {
     /// Solves (27) for a plant and its noise.
     ///
     /// # Errors
-    /// [`DesignError::Dimension`], [`DesignError::NotFinite`], [`DesignError::NotPositiveDefinite`] (V),
+    /// [`DesignError::Dimension`], [`DesignError::ElementNotFinite`], [`DesignError::NotPositiveDefinite`] (V),
     /// [`DesignError::NotPositiveSemidefinite`] (\[W Z; Zᵀ V\]), [`DesignError::Undetectable`] for a mode
     /// that is not stable and not measured, [`DesignError::Uncontrollable`] for one on or outside the unit
     /// circle that no noise excites, [`DesignError::Riccati`].
@@ -59,9 +59,7 @@ impl KalmanDesign {
         // Ā = A − Z V⁻¹ C,  W̄ = W − Z V⁻¹ Zᵀ
         let (a, c) = (plant.a(), plant.c());
         let z_t = z.transpose();
-        let Some(v_factor) = v.clone().cholesky() else {
-            return Err(DesignError::NotPositiveDefinite { name: "V" });
-        };
+        let v_factor = validate::cholesky("V", v)?;
         let a_bar = a - z * v_factor.solve(c);
         let w_bar = symmetrized(&(w - z * v_factor.solve(&z_t)));
 
@@ -74,9 +72,7 @@ impl KalmanDesign {
             })?;
         // K = (A P Cᵀ + Z)(C P Cᵀ + V)⁻¹
         let innovation = symmetrized(&(c * &covariance * c.transpose() + v));
-        let Some(innovation_factor) = innovation.cholesky() else {
-            return Err(DesignError::NotPositiveDefinite { name: "C P Cᵀ + V" });
-        };
+        let innovation_factor = validate::cholesky("C P Cᵀ + V", &innovation)?;
         let gain = innovation_factor.solve(&(c * &covariance * a.transpose() + z_t)).transpose();
         Ok(Self { gain, covariance })
     }

@@ -67,7 +67,7 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> LaguerreMpc
     ///
     /// # Errors
     /// [`DesignError::Dimension`] when the sizes differ from the const generics or E is too small,
-    /// [`DesignError::NotFinite`], [`DesignError::NotPositiveDefinite`] (Ω with slack).
+    /// [`DesignError::ElementNotFinite`], [`DesignError::NotPositiveDefinite`] (Ω with slack).
     pub fn new(design: &LmpcDesign, limits: &[Limit]) -> Result<Self, DesignError> {
         let unconstrained = StateFeedback::from_design(design)?;
         let (omega, psi) = (design.prediction().omega(), design.prediction().psi());

@@ -63,13 +63,7 @@ impl PlanCoordinates {
         let states = design.model().states();
         let terms = design.cost().nrows() - states;
         let hessian = design.cost().view((states, states), (terms, terms)).into_owned();
-        let name = "S_ηη";
-        let factor = hessian.cholesky().ok_or(DesignError::NotPositiveDefinite { name })?;
-        // L⁻¹
-        let inverse = factor
-            .l()
-            .solve_lower_triangular(&DMatrix::identity(terms, terms))
-            .ok_or(DesignError::NotPositiveDefinite { name })?;
+        let inverse = validate::inverse_factor("S_ηη", &hessian)?;
         // S_ηη⁻¹ = L⁻ᵀ L⁻¹
         let by_z = inverse.transpose();
         let unlimited = -(&by_z * (&inverse * design.cost().view((states, 0), (terms, states))));

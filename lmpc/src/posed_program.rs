@@ -53,24 +53,17 @@ impl PosedProgram {
     /// The program of a design under limits, of which a slack of 1 costs `slack_cost`.
     ///
     /// # Errors
-    /// [`DesignError::Dimension`] when a limit does not fit the design, [`DesignError::NotPositiveDefinite`].
+    /// [`DesignError::Dimension`] when a limit does not fit the design, [`DesignError::NotPositiveDefinite`] (S_ηη), [`DesignError::SlackCost`].
     pub fn new(
         design: &StabilizedDesign,
         limits: &[SignalLimit],
         slack_cost: f64,
     ) -> Result<Self, DesignError> {
-        if !(slack_cost > 0.0 && slack_cost.is_finite()) {
-            return Err(DesignError::NotPositiveDefinite { name: "the cost of the slack" });
-        }
+        validate::slack_cost(slack_cost)?;
         let plan = design.plan();
         let (states, terms) = (design.model().states(), plan.terms);
         let hessian = design.cost().view((states, states), (terms, terms)).into_owned();
-        let name = "S_ηη";
-        let factor = hessian.cholesky().ok_or(DesignError::NotPositiveDefinite { name })?;
-        let inverse = factor
-            .l()
-            .solve_lower_triangular(&DMatrix::identity(terms, terms))
-            .ok_or(DesignError::NotPositiveDefinite { name })?;
+        let inverse = validate::inverse_factor("S_ηη", &hessian)?;
         let mut program = Self {
             coupling: design.cost().view((states, 0), (terms, states)).into_owned(),
             first_move: plan.move_of.columns(states, terms).into_owned(),

@@ -21,7 +21,7 @@ impl Prediction {
     /// for them; without one they are charged over all time, which by orthonormality is R_L = R ⊗ I.
     ///
     /// # Errors
-    /// [`DesignError::Dimension`], [`DesignError::NotFinite`], [`DesignError::BasisCount`],
+    /// [`DesignError::Dimension`], [`DesignError::ElementNotFinite`], [`DesignError::BasisCount`],
     /// [`DesignError::HorizonTooShort`].
     pub fn new(
         a: &DMatrix<f64>,

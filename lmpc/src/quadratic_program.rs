@@ -113,7 +113,7 @@ impl<const N: usize> QuadraticProgram<N> {
     /// For a positive definite H, n×n with n ≤ N, and any number of constraint rows G, M×n.
     ///
     /// # Errors
-    /// [`DesignError::Dimension`] (N×N stands for what H may be at most), [`DesignError::NotFinite`], [`DesignError::NotSymmetric`],
+    /// [`DesignError::Dimension`] (N×N stands for what H may be at most), [`DesignError::ElementNotFinite`], [`DesignError::NotSymmetric`],
     /// [`DesignError::NotPositiveDefinite`].
     pub fn new(h: &DMatrix<f64>, g: &DMatrix<f64>) -> Result<Self, DesignError> {
         let unknowns = h.nrows();
@@ -122,12 +122,8 @@ impl<const N: usize> QuadraticProgram<N> {
         }
         validate::shape("H", h, (unknowns, unknowns))?;
         validate::shape("G", g, (g.nrows(), unknowns))?;
-        validate::positive_definite("H", h)?;
-        let factor = h.clone().cholesky().ok_or(DesignError::NotPositiveDefinite { name: "H" })?;
-        let inverse = factor
-            .l()
-            .solve_lower_triangular(&DMatrix::identity(unknowns, unknowns))
-            .ok_or(DesignError::NotPositiveDefinite { name: "H" })?;
+        validate::symmetric("H", h)?;
+        let inverse = validate::inverse_factor("H", h)?;
         let mut inverse_factor: Box<SMatrix<f64, N, N>> = Box::new(SMatrix::zeros());
         inverse_factor.view_mut((0, 0), (unknowns, unknowns)).copy_from(&inverse);
 

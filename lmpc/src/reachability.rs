@@ -20,7 +20,7 @@ const RANK_TOLERANCE: f64 = 1e-10;
 /// it does not count.
 ///
 /// # Errors
-/// [`DesignError::Dimension`], [`DesignError::NotFinite`], [`DesignError::Eigenvalues`] when the eigenvalues of the
+/// [`DesignError::Dimension`], [`DesignError::ElementNotFinite`], [`DesignError::Eigenvalues`] when the eigenvalues of the
 /// remaining block are not found.
 pub fn uncontrollable_eigenvalues(
     a: &DMatrix<f64>,

@@ -22,7 +22,7 @@ const UNIT_CIRCLE_MARGIN: f64 = 1e-6;
 /// may be as thin as CᵀC.
 ///
 /// # Errors
-/// [`DesignError::Dimension`], [`DesignError::NotFinite`], [`DesignError::NotSymmetric`],
+/// [`DesignError::Dimension`], [`DesignError::ElementNotFinite`], [`DesignError::NotSymmetric`],
 /// [`DesignError::NotPositiveSemidefinite`] (Q), [`DesignError::NotPositiveDefinite`] (R),
 /// [`DesignError::Uncontrollable`] and [`DesignError::Undetectable`] for a mode on or outside the unit
 /// circle, [`DesignError::Riccati`] when the residual stays large.
@@ -67,10 +67,7 @@ fn doubled(
     q: &DMatrix<f64>,
     r: &DMatrix<f64>,
 ) -> Result<(DMatrix<f64>, usize), DesignError> {
-    let r_inverse_b_t = match r.clone().cholesky() {
-        Some(factor) => factor.solve(&b.transpose()),
-        None => return Err(DesignError::NotPositiveDefinite { name: "R" }),
-    };
+    let r_inverse_b_t = validate::cholesky("R", r)?.solve(&b.transpose());
     let identity = DMatrix::identity(a.nrows(), a.nrows());
     let mut a_k = a.clone();
     let mut g_k = product(b, &r_inverse_b_t);

@@ -13,7 +13,7 @@ use crate::precision::converted;
 use crate::worst_constraint::Worst;
 use crate::{
     Controller, ControllerState, DesignError, Outcome, Precision, Sample, SignalLimit, StabilizedDesign,
-    StateFeedback, Status, Step, WarmStart,
+    StateFeedback, Status, Step, WarmStart, validate,
 };
 
 /// The slack from which limits count as relaxed: a thousandth of their relaxations.
@@ -56,16 +56,14 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize> StabilizedM
     ///
     /// # Errors
     /// [`DesignError::Dimension`] when the sizes differ from the const generics, E is too small, a signal has more than three
-    /// components or there are more than 640 components on all samples together; [`DesignError::NotFinite`],
-    /// [`DesignError::NotPositiveDefinite`] (the cost of the slack).
+    /// components or there are more than 640 components on all samples together; [`DesignError::ElementNotFinite`],
+    /// [`DesignError::NotPositiveDefinite`] (S_ηη), [`DesignError::SlackCost`].
     pub fn new(
         design: &StabilizedDesign,
         limits: &[SignalLimit],
         slack_cost: f64,
     ) -> Result<Self, DesignError> {
-        if !(slack_cost > 0.0 && slack_cost.is_finite()) {
-            return Err(DesignError::NotPositiveDefinite { name: "the cost of the slack" });
-        }
+        validate::slack_cost(slack_cost)?;
         let states = design.model().states();
         let terms = design.cost().nrows() - states;
         if terms + 1 > E {

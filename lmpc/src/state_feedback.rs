@@ -28,7 +28,7 @@ impl<const N: usize, const P: usize, const Q: usize> StateFeedback<N, P, Q> {
     ///
     /// # Errors
     /// [`DesignError::Dimension`] when the sizes differ from the const generics,
-    /// [`DesignError::NotFinite`].
+    /// [`DesignError::ElementNotFinite`].
     pub fn new(gain: &DMatrix<f64>) -> Result<Self, DesignError> {
         validate::shape("K", gain, (P, N + Q))?;
         Ok(Self {

@@ -39,7 +39,7 @@ impl StateSpace {
     /// From the discrete matrices A (n×n), B (n×p) and C (q×n).
     ///
     /// # Errors
-    /// [`DesignError::Dimension`] when the shapes do not fit or one is empty, [`DesignError::NotFinite`].
+    /// [`DesignError::Dimension`] when the shapes do not fit or one is empty, [`DesignError::ElementNotFinite`].
     pub fn new(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>) -> Result<Self, DesignError> {
         let states = a.nrows().max(1);
         validate::shape("A", &a, (states, states))?;

@@ -109,7 +109,7 @@ impl StateSpaceMpcDesign {
     /// As [`StateSpaceMpcDesign::new`] with the weights that a Laguerre MPC can have.
     ///
     /// # Errors
-    /// [`DesignError::Dimension`], [`DesignError::NotFinite`], [`DesignError::NotPositiveSemidefinite`]
+    /// [`DesignError::Dimension`], [`DesignError::ElementNotFinite`], [`DesignError::NotPositiveSemidefinite`]
     /// (Q, W, P), [`DesignError::NotPositiveDefinite`] (S), [`DesignError::MovesBeyondHorizon`] unless
     /// 1 ≤ N_c ≤ N − 1, [`DesignError::Unstable`] when the unconstrained closed loop is not stable,
     /// [`DesignError::IllConditioned`] when rounding may change its gain by more than 10⁻⁴ of its size.

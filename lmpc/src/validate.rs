@@ -1,6 +1,6 @@
 //! Checks on matrices that several designs share.
 
-use nalgebra::DMatrix;
+use nalgebra::{Cholesky, DMatrix, Dyn};
 
 use crate::DesignError;
 
@@ -19,7 +19,13 @@ pub(crate) fn shape(
 }
 
 pub(crate) fn finite(name: &'static str, matrix: &DMatrix<f64>) -> Result<(), DesignError> {
-    if matrix.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(DesignError::NotFinite { name }) }
+    match matrix.iter().position(|element| !element.is_finite()) {
+        None => Ok(()),
+        Some(index) => {
+            let (row, column) = matrix.vector_to_matrix_index(index);
+            Err(DesignError::ElementNotFinite { name, row, column, value: matrix[index] })
+        }
+    }
 }
 
 pub(crate) fn symmetric(name: &'static str, matrix: &DMatrix<f64>) -> Result<(), DesignError> {
@@ -46,10 +52,40 @@ pub(crate) fn positive_semidefinite(name: &'static str, matrix: &DMatrix<f64>) -
 
 pub(crate) fn positive_definite(name: &'static str, matrix: &DMatrix<f64>) -> Result<(), DesignError> {
     symmetric(name, matrix)?;
-    if matrix.clone().cholesky().is_none() {
-        return Err(DesignError::NotPositiveDefinite { name });
+    cholesky(name, matrix).map(drop)
+}
+
+/// L of a symmetric matrix L Lᵀ.
+///
+/// # Errors
+/// [`DesignError::NotPositiveDefinite`], [`DesignError::NotFinite`].
+pub(crate) fn cholesky(name: &'static str, matrix: &DMatrix<f64>) -> Result<Cholesky<f64, Dyn>, DesignError> {
+    matrix.clone().cholesky().ok_or_else(|| not_positive_definite(name, matrix))
+}
+
+/// L⁻¹ of a symmetric matrix L Lᵀ.
+///
+/// # Errors
+/// [`DesignError::NotPositiveDefinite`], [`DesignError::NotFinite`].
+pub(crate) fn inverse_factor(name: &'static str, matrix: &DMatrix<f64>) -> Result<DMatrix<f64>, DesignError> {
+    let size = matrix.nrows();
+    let factor = cholesky(name, matrix)?;
+    let inverse = factor.l().solve_lower_triangular(&DMatrix::identity(size, size));
+    inverse.ok_or_else(|| not_positive_definite(name, matrix))
+}
+
+fn not_positive_definite(name: &'static str, matrix: &DMatrix<f64>) -> DesignError {
+    if !matrix.iter().all(|element| element.is_finite()) {
+        // It has no eigenvalues that could be looked for.
+        return DesignError::NotFinite { name };
     }
-    Ok(())
+    DesignError::NotPositiveDefinite { name, eigenvalue: matrix.clone().symmetric_eigenvalues().min() }
+}
+
+/// # Errors
+/// [`DesignError::SlackCost`] unless it is positive and finite.
+pub(crate) fn slack_cost(value: f64) -> Result<(), DesignError> {
+    if value > 0.0 && value.is_finite() { Ok(()) } else { Err(DesignError::SlackCost { value }) }
 }
 
 /// Removes what rounding has added to a matrix that is symmetric by construction.

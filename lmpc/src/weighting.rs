@@ -15,7 +15,7 @@ impl Weights {
     /// From full matrices.
     ///
     /// # Errors
-    /// [`DesignError::Dimension`], [`DesignError::NotFinite`], [`DesignError::NotSymmetric`],
+    /// [`DesignError::Dimension`], [`DesignError::ElementNotFinite`], [`DesignError::NotSymmetric`],
     /// [`DesignError::NotPositiveSemidefinite`] (Q), [`DesignError::NotPositiveDefinite`] (R).
     pub fn new(model: &Augmented, q: DMatrix<f64>, r: DMatrix<f64>) -> Result<Self, DesignError> {
         validate::shape("Q", &q, (model.states(), model.states()))?;

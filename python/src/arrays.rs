@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use numpy::{Complex64, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::errors::ArgumentError;
+use crate::errors::{self, ArgumentError};
 
 /// A matrix from anything that NumPy makes an array of two dimensions of; a number is a 1×1 matrix.
 pub fn matrix(name: &str, value: &Bound<'_, PyAny>) -> PyResult<DMatrix<f64>> {
@@ -74,6 +74,13 @@ pub fn check_finite(name: &str, numbers: &[f64]) -> PyResult<()> {
         }
         None => Ok(()),
     }
+}
+
+/// Refuses a matrix of which an element is not finite, as designs do.
+pub fn check_matrix(name: &'static str, matrix: &DMatrix<f64>) -> PyResult<()> {
+    let Some(index) = matrix.iter().position(|number| !number.is_finite()) else { return Ok(()) };
+    let (row, column) = matrix.vector_to_matrix_index(index);
+    Err(errors::design(&lmpc::DesignError::ElementNotFinite { name, row, column, value: matrix[index] }))
 }
 
 fn numbers<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {

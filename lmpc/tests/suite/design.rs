@@ -286,9 +286,12 @@ fn violated_preconditions_are_named() {
     }
     assert_eq!(
         Weights::output(&model, 1.0, 0.0).unwrap_err(),
-        DesignError::NotPositiveDefinite { name: "R" }
+        DesignError::NotPositiveDefinite { name: "R", eigenvalue: 0.0 }
     );
-    assert!(matches!(Weights::output(&model, f64::NAN, 1.0), Err(DesignError::NotFinite { name: "Q" })));
+    assert!(matches!(
+        Weights::output(&model, f64::NAN, 1.0),
+        Err(DesignError::ElementNotFinite { name: "Q", .. })
+    ));
     // Two states for one measured output that integrates nothing: y = 0 · x can never be steered.
     let blind =
         StateSpace::new(dmatrix![1.0, 1.0; 0.0, 1.0], dmatrix![0.0; 1.0], dmatrix![0.0, 0.0]).unwrap();

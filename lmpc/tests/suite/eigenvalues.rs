@@ -165,7 +165,11 @@ fn a_matrix_without_rows_has_none_and_wrong_ones_are_refused() {
         eigenvalues("A", &dmatrix![1.0, 2.0]),
         Err(DesignError::Dimension { name: "A", expected: (1, 1), actual: (1, 2) })
     );
-    assert_eq!(eigenvalues("A", &dmatrix![f64::NAN]), Err(DesignError::NotFinite { name: "A" }));
+    let told = eigenvalues("A", &dmatrix![0.0, 1.0; f64::NEG_INFINITY, 0.0]);
+    assert_eq!(
+        told,
+        Err(DesignError::ElementNotFinite { name: "A", row: 1, column: 0, value: f64::NEG_INFINITY })
+    );
 }
 
 #[test]

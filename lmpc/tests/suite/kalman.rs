@@ -176,13 +176,19 @@ fn wrong_covariances_are_refused_by_name() {
         KalmanDesign::new(&plant(), &NoiseCovariance { state, measurement, cross }).unwrap_err()
     };
     let (w, v, z) = (noise().state, noise().measurement, noise().cross);
-    assert_eq!(refused(w.clone(), dmatrix![0.0], z.clone()), DesignError::NotPositiveDefinite { name: "V" });
+    assert_eq!(
+        refused(w.clone(), dmatrix![0.0], z.clone()),
+        DesignError::NotPositiveDefinite { name: "V", eigenvalue: 0.0 }
+    );
     assert!(matches!(
         refused(w.clone(), v.clone(), &z * 1e3),
         DesignError::NotPositiveSemidefinite { name: "[W Z; Zᵀ V]", .. }
     ));
     assert!(matches!(refused(dmatrix![1.0], v.clone(), z.clone()), DesignError::Dimension { name: "W", .. }));
-    assert!(matches!(refused(w * f64::NAN, v.clone(), z.clone()), DesignError::NotFinite { name: "W" }));
+    assert!(matches!(
+        refused(w * f64::NAN, v.clone(), z.clone()),
+        DesignError::ElementNotFinite { name: "W", row: 0, column: 0, .. }
+    ));
     // The position cannot be told from the velocity alone.
     let blind = StateSpace::new(plant().a().clone(), plant().b().clone(), dmatrix![0.0, 1.0]).unwrap();
     let error = KalmanDesign::new(&blind, &noise()).unwrap_err();

@@ -237,7 +237,7 @@ fn wrong_problems_are_refused() {
     ));
     assert!(matches!(
         QuadraticProgram::<2>::new(&-identity, &dmatrix![1.0, 0.0]),
-        Err(DesignError::NotPositiveDefinite { name: "H" })
+        Err(DesignError::NotPositiveDefinite { name: "H", eigenvalue: -1.0 })
     ));
 }
 

@@ -236,9 +236,12 @@ fn wrong_weights_are_refused_by_name() {
     let (a, b) = (dmatrix![1.0, 1.0; 0.0, 1.0], dmatrix![0.0; 1.0]);
     let q = dmatrix![1.0, 0.0; 0.0, 0.0];
     let refused = |q: &DMatrix<f64>, r: f64| solve_riccati(&a, &b, q, &dmatrix![r]).unwrap_err();
-    assert_eq!(refused(&q, 0.0), DesignError::NotPositiveDefinite { name: "R" });
-    assert_eq!(refused(&q, -1.0), DesignError::NotPositiveDefinite { name: "R" });
-    assert_eq!(refused(&q, f64::NAN), DesignError::NotFinite { name: "R" });
+    assert_eq!(refused(&q, 0.0), DesignError::NotPositiveDefinite { name: "R", eigenvalue: 0.0 });
+    assert_eq!(refused(&q, -1.0), DesignError::NotPositiveDefinite { name: "R", eigenvalue: -1.0 });
+    assert_eq!(
+        refused(&q, f64::NAN).to_string(),
+        "R contains a value that is not finite: element (0, 0) is NaN"
+    );
     assert!(matches!(refused(&(-&q), 1.0), DesignError::NotPositiveSemidefinite { name: "Q", .. }));
     assert!(matches!(
         refused(&dmatrix![1.0, 0.5; 0.0, 1.0], 1.0),

@@ -289,7 +289,10 @@ fn wrong_designs_are_refused() {
     let refused = |q: &DMatrix<f64>, s: &DMatrix<f64>, horizon, moves| {
         StateSpaceMpcDesign::new(&plant(), q, s, horizon, moves).unwrap_err()
     };
-    assert!(matches!(refused(&one, &-&one, 50, 5), DesignError::NotPositiveDefinite { name: "S" }));
+    assert!(matches!(
+        refused(&one, &-&one, 50, 5),
+        DesignError::NotPositiveDefinite { name: "S", eigenvalue: -1.0 }
+    ));
     assert!(matches!(refused(&-&one, &one, 50, 5), DesignError::NotPositiveSemidefinite { name: "Q", .. }));
     assert!(matches!(refused(&one, &one, 5, 5), DesignError::MovesBeyondHorizon { moves: 5, .. }));
     assert!(matches!(refused(&one, &one, 5, 0), DesignError::MovesBeyondHorizon { moves: 0, .. }));

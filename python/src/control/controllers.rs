@@ -12,7 +12,7 @@ use super::limits::{Limit, SignalLimit};
 use super::models::StateSpace;
 use super::padding;
 use crate::arguments::{objects_or_none, positive};
-use crate::arrays::{array1, elements, finite_vector_of, matrix, vector, vector_of};
+use crate::arrays::{array1, check_matrix, elements, finite_vector_of, matrix, vector, vector_of};
 use crate::errors::{self, ArgumentError};
 
 /// What a controller decided at a sample.
@@ -209,9 +209,7 @@ impl Controller {
             let refusal = Refusal::Dimension { name: "gain", expected, actual: gain.shape() };
             return Err(errors::design(&refusal));
         }
-        if gain.iter().any(|number| !number.is_finite()) {
-            return Err(errors::design(&Refusal::NotFinite { name: "gain" }));
-        }
+        check_matrix("gain", &gain)?;
         Self::of(python, &Feedback { plant, gain: &gain }, plant, 0, 0)
     }
 

@@ -3,7 +3,7 @@
 use numpy::{Complex64, PyArray1, PyArray2};
 use pyo3::prelude::*;
 
-use crate::arrays::{array2, complex, matrix};
+use crate::arrays::{array2, check_matrix, complex, matrix};
 use crate::errors::{self, ArgumentError, DesignError};
 
 type Matrix<'py> = Bound<'py, PyArray2<f64>>;
@@ -66,9 +66,7 @@ fn spectral_radius(a: &Bound<'_, PyAny>) -> PyResult<f64> {
 #[pyfunction]
 fn condition_number(a: &Bound<'_, PyAny>) -> PyResult<f64> {
     let a = matrix("a", a)?;
-    if a.iter().any(|number| !number.is_finite()) {
-        return Err(errors::design(&lmpc::DesignError::NotFinite { name: "a" }));
-    }
+    check_matrix("a", &a)?;
     if a.is_empty() {
         let (rows, columns) = a.shape();
         return Err(ArgumentError::new_err(format!(
