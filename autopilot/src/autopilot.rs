@@ -20,7 +20,7 @@ use crate::parameters::Parameters;
 use crate::service::registry::Registry;
 use crate::service::{heartbeat, parameter, traffic};
 
-/// How long a vehicle at rest is left alone when its long tick ends, µs, nine more of them: so much later it tells what it decides by itself.
+/// For how long a vehicle at rest is left alone after the end of its long tick, µs: nine more of 5 ms.
 const LONGER_REST_US: u64 = 45_000;
 
 /// A vehicle with its services.
@@ -132,9 +132,12 @@ impl Autopilot {
     /// it does not matter when that is flown, if it is before anything is handed in. It ends when the next regular message is due; those that
     /// are due before the long tick ends leave with its end. What the vehicle decides by itself meanwhile is told later, by 50 ms at most.
     pub fn rests_until_us(&self) -> Option<u64> {
-        let now_us = self.context.vehicle.time_us();
-        let alone_until_us = Some(self.alone_until_us()).filter(|until_us| *until_us > now_us)?;
-        let end_us = self.context.vehicle.rests_until_us()?;
+        let vehicle = &self.context.vehicle;
+        let alone_until_us = self.alone_until_us();
+        if alone_until_us <= vehicle.time_us() {
+            return None;
+        }
+        let end_us = vehicle.rests_until_us()?;
         let until_us = alone_until_us.clamp(end_us, end_us + LONGER_REST_US).next_multiple_of(TICK_US);
         Some(self.before_us + until_us)
     }

@@ -60,13 +60,11 @@ impl PlanCoordinates {
     /// # Errors
     /// [`DesignError::NotPositiveDefinite`]: S_ηη.
     pub(crate) fn of(design: &StabilizedDesign) -> Result<Self, DesignError> {
-        let states = design.model().states();
-        let terms = design.cost().nrows() - states;
-        let hessian = design.cost().view((states, states), (terms, terms)).into_owned();
+        let (hessian, coupling) = design.coefficient_cost();
         let inverse = validate::inverse_factor("S_ηη", &hessian)?;
         // S_ηη⁻¹ = L⁻ᵀ L⁻¹
         let by_z = inverse.transpose();
-        let unlimited = -(&by_z * (&inverse * design.cost().view((states, 0), (terms, states))));
+        let unlimited = -(&by_z * (&inverse * coupling));
         Ok(Self { unlimited, by_z })
     }
 }

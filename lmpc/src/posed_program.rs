@@ -53,7 +53,8 @@ impl PosedProgram {
     /// The program of a design under limits, of which a slack of 1 costs `slack_cost`.
     ///
     /// # Errors
-    /// [`DesignError::Dimension`] when a limit does not fit the design, [`DesignError::NotPositiveDefinite`] (S_ηη), [`DesignError::SlackCost`].
+    /// [`DesignError::Dimension`] when a limit does not fit the design, [`DesignError::NotPositiveDefinite`] (S_ηη),
+    /// [`DesignError::SlackCost`].
     pub fn new(
         design: &StabilizedDesign,
         limits: &[SignalLimit],
@@ -62,10 +63,10 @@ impl PosedProgram {
         validate::slack_cost(slack_cost)?;
         let plan = design.plan();
         let (states, terms) = (design.model().states(), plan.terms);
-        let hessian = design.cost().view((states, states), (terms, terms)).into_owned();
+        let (hessian, coupling) = design.coefficient_cost();
         let inverse = validate::inverse_factor("S_ηη", &hessian)?;
         let mut program = Self {
-            coupling: design.cost().view((states, 0), (terms, states)).into_owned(),
+            coupling,
             first_move: plan.move_of.columns(states, terms).into_owned(),
             stabilizing_gain: design.stabilizing_gain().clone(),
             left: DMatrix::zeros(0, terms + 1),

@@ -118,9 +118,7 @@ impl StabilizedDesign {
             .ok_or(DesignError::Unstable { spectral_radius: radius })?;
         let cost = validate::symmetrized(&cost);
 
-        let terms = plan.terms;
-        let hessian = cost.view((states, states), (terms, terms)).into_owned();
-        let coupling = cost.view((states, 0), (terms, states)).into_owned();
+        let (hessian, coupling) = coefficient_cost(&cost, states);
         let OptimalGain { unknowns: coefficient_gain, first_move, condition: condition_number, .. } =
             OptimalGain::new("S of the coefficients", &hessian, &coupling, &InputBasis::new(bases).row())?;
         // Δu = −K_s x + L(0)ᵀ η with η = −S_ηη⁻¹ S_ηx x
@@ -142,6 +140,11 @@ impl StabilizedDesign {
             spectral_radius,
             condition_number,
         })
+    }
+
+    /// S_ηη and S_ηx.
+    pub(crate) fn coefficient_cost(&self) -> (DMatrix<f64>, DMatrix<f64>) {
+        coefficient_cost(&self.cost, self.model.states())
     }
 
     /// K, p×(n+q): without limits Δu = −K \[Δx_m; y − r\].
@@ -216,6 +219,15 @@ impl StabilizedDesign {
     pub(crate) fn plan(&self) -> Plan {
         Plan::new(&self.model, &self.stabilizing_gain, &self.bases)
     }
+}
+
+/// What S of \[x; η\] tells of η, for so many states x: S_ηη and S_ηx.
+fn coefficient_cost(cost: &DMatrix<f64>, states: usize) -> (DMatrix<f64>, DMatrix<f64>) {
+    let terms = cost.nrows() - states;
+    (
+        cost.view((states, states), (terms, terms)).into_owned(),
+        cost.view((states, 0), (terms, states)).into_owned(),
+    )
 }
 
 /// The autonomous system \[x; ρ\] that generates a plan.

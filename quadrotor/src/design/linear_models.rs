@@ -50,7 +50,7 @@ pub fn position_model(sample_time_s: f64, discretization: Discretization) -> Res
 /// ```
 ///
 /// # Errors
-/// [`DesignError::SampleTime`] unless the sample time is positive, [`DesignError::NotFinite`] for a time constant of 0.
+/// [`DesignError::SampleTime`] unless the sample time is positive, [`DesignError::ElementNotFinite`] for a time constant of 0.
 pub fn altitude_model_with_lag(
     time_constant_s: f64,
     drag_1_s: f64,
@@ -66,7 +66,7 @@ pub fn altitude_model_with_lag(
 /// φ, φ̇, θ, θ̇, ψ, ψ̇; inputs τ_φ, τ_θ, τ_ψ; outputs φ, θ, ψ.
 ///
 /// # Errors
-/// [`DesignError::SampleTime`] unless the sample time is positive, [`DesignError::NotFinite`] when a
+/// [`DesignError::SampleTime`] unless the sample time is positive, [`DesignError::ElementNotFinite`] when a
 /// moment of inertia, kg·m², is 0.
 pub fn attitude_model(
     inertia_kg_m2: &[f64; 3],

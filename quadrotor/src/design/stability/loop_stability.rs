@@ -49,7 +49,7 @@ impl LoopStability {
     /// Of a loop whose readings have errors of these standard deviations.
     ///
     /// # Errors
-    /// [`DesignError::NotFinite`], [`DesignError::Eigenvalues`].
+    /// [`DesignError::ElementNotFinite`], [`DesignError::Eigenvalues`].
     pub(crate) fn of<const S: usize>(
         name: &'static str,
         signal: &impl SmallSignal<S>,

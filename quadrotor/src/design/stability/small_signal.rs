@@ -72,7 +72,7 @@ pub(crate) fn transition<const S: usize>(signal: &impl SmallSignal<S>) -> DMatri
 /// The modes of Φ over `period_s`.
 ///
 /// # Errors
-/// [`DesignError::NotFinite`], [`DesignError::Eigenvalues`].
+/// [`DesignError::ElementNotFinite`], [`DesignError::Eigenvalues`].
 pub(crate) fn modes(transition: &DMatrix<f64>, period_s: f64) -> Result<Modes, DesignError> {
     let mut modes =
         Modes { spectral_radius: 0.0, decay_rate_1_s: f64::MAX, damping_ratio: 1.0, frequency_rad_s: 0.0 };

@@ -74,7 +74,7 @@ impl StabilityReport {
     /// Of the controllers of a configuration, whatever it says.
     ///
     /// # Errors
-    /// [`DesignError::NotFinite`], [`DesignError::Eigenvalues`].
+    /// [`DesignError::ElementNotFinite`], [`DesignError::Eigenvalues`].
     pub(crate) fn of(configuration: &Configuration, design: &CascadeDesign) -> Result<Self, DesignError> {
         let noise = reading(&configuration.sensors);
         let [roll, pitch] = LinearLaw::of(&design.attitude.lean);

@@ -32,7 +32,7 @@ impl TiltingLoop {
     /// North (0) or east (1), by leaning about some axis of the body.
     ///
     /// # Errors
-    /// [`DesignError::NotFinite`].
+    /// [`DesignError::ElementNotFinite`].
     pub(crate) fn new(
         configuration: &Configuration,
         axis: usize,

@@ -20,7 +20,7 @@ impl TurningLoop {
     /// Of an axis whose torque leads by `lead_s`, s: see [`rotation`].
     ///
     /// # Errors
-    /// [`DesignError::NotFinite`].
+    /// [`DesignError::ElementNotFinite`].
     pub(crate) fn new(
         configuration: &Configuration,
         axis: TurningAxis,

@@ -33,7 +33,7 @@ impl VerticalLoop {
     /// Of the altitude controller.
     ///
     /// # Errors
-    /// [`DesignError::NotFinite`].
+    /// [`DesignError::ElementNotFinite`].
     pub(crate) fn new(configuration: &Configuration, moving: MovingAxis<3>) -> Result<Self, DesignError> {
         let controllers = &configuration.controllers;
         let events = loop_events(controllers.altitude.sample_time_us, controllers.attitude.sample_time_us);
