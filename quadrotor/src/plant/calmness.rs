@@ -56,8 +56,8 @@ impl Calmness {
 
 impl Plant {
     /// Whether a long step from this state under these inputs is as good as short ones: it turns and moves at ordinary speeds, nothing
-    /// extraordinary acts on it, and it stays away from the stiff ground. What is calm cannot leave the range of numbers within a
-    /// long step.
+    /// extraordinary acts on it, and it stays away from the stiff ground, or stands still on it. What is calm cannot leave the range of
+    /// numbers within a long step.
     pub(crate) fn is_calm(&self, state: &PlantState, inputs: &PlantInputs) -> bool {
         let Some(Calmness { force_n, torque_n_m, rotor_rad_s }) = self.calmness else { return false };
         let Actuation::RotorSpeeds(command_rad_s) = &inputs.actuation else { return false };
@@ -67,12 +67,14 @@ impl Plant {
         let falls_m = LONG_STEP_S * (body.velocity_m_s.z.max(0.0) + MORE_M_S);
         within(&body.body_rate_rad_s, TURNS_RAD_S)
             && within(&body.velocity_m_s, MOVES_M_S)
-            && (!self.has_ground() || is_farther_than(falls_m, body, inputs.ground_z_m, self.reach_m()))
             && within(&disturbance.force_n, force_n)
             && within(&disturbance.torque_n_m, torque_n_m)
             && within(&disturbance.wind_m_s, MOVES_M_S)
             && turn(command_rad_s)
             && turn(&state.rotor_speed_rad_s)
+            && (!self.has_ground()
+                || is_farther_than(falls_m, body, inputs.ground_z_m, self.reach_m())
+                || self.stands_still(state, inputs))
     }
 }
 

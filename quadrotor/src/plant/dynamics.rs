@@ -51,15 +51,22 @@ pub struct Plant {
     likeness: u64,
 }
 
-/// The beginning of a step, which is the same however long the step is.
+/// The beginning of a step, which is the same however long the step is: where it begins, and the derivative there.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BegunStep {
-    /// Where it begins: at rest on the ground, if it is held there.
-    from: PlantState,
-    /// The derivative there.
-    slope: PlantState,
-    held: bool,
+pub(crate) enum BegunStep {
+    /// It flies or slips.
+    Free { from: PlantState, slope: PlantState },
+    /// Static friction holds its place and heading. It may sink or tilt on its feet.
+    Held { from: PlantState, slope: PlantState },
+    /// Nothing moves.
+    Still(PlantState),
 }
+
+/// What is held on the ground and moves more slowly than this, m/s and rad/s, stands still if it would begin to move by less than
+/// [`STIRS`]: the contact would slow it down for ever.
+const CREEPS: f64 = 1e-8;
+/// Accelerations of body and rotors, m/s² and rad/s². At this one a foot is 4e-10 m from where it would come to rest.
+const STIRS: f64 = 1e-6;
 
 /// The rest follows from what is compared.
 impl PartialEq for Plant {
@@ -220,34 +227,75 @@ impl Plant {
     ///
     /// Static friction is decided at the beginning of the step. A vehicle that stands on all feet, slips by less than
     /// 0.1 m/s, and is pulled along the ground by less than μ N (μ = 0.7) keeps its place and heading exactly, while it may
-    /// still sink or tilt on its feet. Pulled by more, it slips.
+    /// still sink or tilt on its feet. Pulled by more, it slips. When it hardly moves any more, by 1e-8 m/s, and nothing is about to
+    /// move it, it stands still exactly.
     pub fn step<T: Valued>(&self, state: &PlantState<T>, inputs: &PlantInputs<T>, h_s: f64) -> PlantState<T> {
         if !self.is_held(state, inputs) {
             return runge_kutta(state, h_s, |state| self.derivative(state, inputs));
         }
-        let mut still = *state;
-        hold(&mut still);
-        runge_kutta(&still, h_s, |state| held(self.derivative(state, inputs)))
+        let mut from = *state;
+        hold(&mut from);
+        if let Some(still) = self.stopped(&from, inputs) {
+            return still;
+        }
+        runge_kutta(&from, h_s, |state| held(self.derivative(state, inputs)))
     }
 
     /// Begins a step of any length.
     pub(crate) fn begin_step(&self, state: &PlantState, inputs: &PlantInputs) -> BegunStep {
         if !self.is_held(state, inputs) {
-            return BegunStep { from: *state, slope: self.derivative(state, inputs), held: false };
+            return BegunStep::Free { from: *state, slope: self.derivative(state, inputs) };
         }
-        let mut still = *state;
-        hold(&mut still);
-        BegunStep { from: still, slope: held(self.derivative(&still, inputs)), held: true }
+        let mut from = *state;
+        hold(&mut from);
+        match self.stopped(&from, inputs) {
+            Some(still) => BegunStep::Still(still),
+            None => BegunStep::Held { from, slope: held(self.derivative(&from, inputs)) },
+        }
     }
 
     /// Ends a step so many seconds after its beginning: where [`Plant::step`] leads, bit for bit.
     pub(crate) fn end_step(&self, begun: &BegunStep, inputs: &PlantInputs, h_s: f64) -> PlantState {
-        let BegunStep { from, slope, held: is_held } = begun;
-        if *is_held {
-            runge_kutta_from(from, slope, h_s, |state| held(self.derivative(state, inputs)))
-        } else {
-            runge_kutta_from(from, slope, h_s, |state| self.derivative(state, inputs))
+        match begun {
+            BegunStep::Free { from, slope } => {
+                runge_kutta_from(from, slope, h_s, |state| self.derivative(state, inputs))
+            }
+            BegunStep::Held { from, slope } => {
+                runge_kutta_from(from, slope, h_s, |state| held(self.derivative(state, inputs)))
+            }
+            BegunStep::Still(state) => *state,
         }
+    }
+
+    /// Whether a step of any length leads to where it begins: the vehicle stands still on the ground.
+    pub(crate) fn stands_still(&self, state: &PlantState, inputs: &PlantInputs) -> bool {
+        let body = &state.body;
+        body.velocity_m_s == Vector3::zeros()
+            && body.body_rate_rad_s == Vector3::zeros()
+            && self.is_held(state, inputs)
+            && self.stopped(state, inputs).is_some()
+    }
+
+    /// Where what is held stands still, if it hardly moves and would hardly begin to. It stays there: the same is found there again.
+    fn stopped<T: Valued>(
+        &self,
+        held_state: &PlantState<T>,
+        inputs: &PlantInputs<T>,
+    ) -> Option<PlantState<T>> {
+        let below = |vector: &Vector3<T>, most: f64| vector.iter().all(|x| libm::fabs(x.value()) <= most);
+        let body = &held_state.body;
+        if !(below(&body.velocity_m_s, CREEPS) && below(&body.body_rate_rad_s, CREEPS)) {
+            return None;
+        }
+        let mut still = *held_state;
+        still.body.velocity_m_s.fill(T::zero());
+        still.body.body_rate_rad_s.fill(T::zero());
+        let slope = held(self.derivative(&still, inputs));
+        let stays = below(&slope.body.velocity_m_s, STIRS)
+            && below(&slope.body.body_rate_rad_s, STIRS)
+            && slope.rotor_speed_rad_s.iter().all(|rate| libm::fabs(rate.value()) <= STIRS)
+            && slope.discharge.value() == 0.0;
+        stays.then_some(still)
     }
 
     /// Whether static friction holds the vehicle where it is.
@@ -315,14 +363,19 @@ fn runge_kutta_from<T: Real>(
 
 #[cfg(test)]
 mod tests {
-    use crate::{Airframe, Environment, InitialState, Plant, PlantInputs, PlantState};
+    use nalgebra::Vector3;
+
+    use super::{BegunStep, STIRS};
+    use crate::{
+        Airframe, AirframePreset, Environment, GRAVITY_M_S2, InitialState, Plant, PlantInputs, PlantState,
+    };
 
     /// In the air, sliding on the ground and held by it: the same as steps that begin by themselves, bit for bit.
     #[test]
     fn a_step_that_was_begun_once_ends_anywhere() {
         let airframe = Airframe::default();
         let plant = Plant::new(&airframe, &Environment { ground_plane: true });
-        for (height_m, velocity_m_s, share, held) in
+        for (height_m, velocity_m_s, share, is_held) in
             [(10.0, 3.0, 1.1, false), (0.0, 3.0, 0.2, false), (-0.002, 0.0, 0.2, true)]
         {
             let initial = InitialState {
@@ -336,10 +389,58 @@ mod tests {
             state.discharge = 0.1;
             let inputs = PlantInputs::rotor_speeds([1.1 * a, b, 0.9 * c, d]);
             let begun = plant.begin_step(&state, &inputs);
-            assert_eq!(begun.held, held, "{height_m}");
+            assert_eq!(matches!(begun, BegunStep::Held { .. }), is_held, "{height_m}");
             for h_s in [0.001, 0.0025, 0.005] {
                 assert_eq!(plant.end_step(&begun, &inputs, h_s), plant.step(&state, &inputs, h_s));
             }
+        }
+    }
+
+    /// Down from a tilted start, its rotors running down: it stands still within two seconds, as deep as its springs carry its weight
+    /// (z = g/ω² with ω = 50 rad/s), level, and there every step ends where it begins. A push that friction holds
+    /// does not move it; a slow rotor, half of the weight from above, or a push of the whole weight does.
+    #[test]
+    fn what_has_come_to_rest_on_the_ground_stands_still() {
+        for preset in AirframePreset::ALL {
+            let airframe = preset.airframe();
+            let plant = Plant::new(&airframe, &Environment { ground_plane: true });
+            let initial = InitialState {
+                position_m: [1.0, -2.0, -0.02],
+                attitude_rad: [0.02, -0.01, 0.7],
+                ..InitialState::default()
+            };
+            let mut state = PlantState::at_rest(&initial);
+            state.rotor_speed_rad_s = [0.3 * airframe.hover_rotor_speed_rad_s(); 4];
+            let inputs = PlantInputs::default();
+            let is_still = |state: &PlantState, inputs: &PlantInputs| {
+                matches!(plant.begin_step(state, inputs), BegunStep::Still(_))
+            };
+            let steps = (0..2_000).find(|_| {
+                let was_still = is_still(&state, &inputs);
+                state = plant.step(&state, &inputs, 1e-3);
+                was_still
+            });
+            assert!(steps.is_some(), "{}", preset.name());
+            assert!((state.body.position_m.z - GRAVITY_M_S2 / 2500.0).abs() < 1e-9, "{state:?}");
+            assert!(state.body.down_axis().0.xy().norm() < 1e-9, "level");
+            assert!(state.rotor_speed_rad_s.iter().all(|speed| speed.abs() < STIRS), "{state:?}");
+            assert!(plant.stands_still(&state, &inputs));
+            assert_eq!(plant.is_calm(&state, &inputs), plant.calmness.is_some(), "long steps are as good");
+            for h_s in [1e-3, 5e-3] {
+                assert_eq!(plant.step(&state, &inputs, h_s), state);
+                assert_eq!(plant.end_step(&plant.begin_step(&state, &inputs), &inputs, h_s), state);
+            }
+            let weight_n = airframe.weight_n();
+            let pushed = |force_n: Vector3<f64>| {
+                let mut inputs = inputs;
+                inputs.disturbance.force_n = force_n;
+                inputs
+            };
+            assert!(is_still(&state, &pushed(Vector3::new(0.3 * weight_n, 0.0, 0.0))), "friction holds it");
+            assert!(!is_still(&state, &pushed(Vector3::new(0.0, 0.0, 0.5 * weight_n))), "pressed down");
+            assert!(!is_still(&state, &pushed(Vector3::new(weight_n, 0.0, 0.0))), "it slips");
+            let [_, two, three, four] = [0.1 * airframe.hover_rotor_speed_rad_s(); 4];
+            assert!(!is_still(&state, &PlantInputs::rotor_speeds([0.0, two, three, four])), "rotors start");
         }
     }
 }
