@@ -20,8 +20,10 @@ use crate::parameters::Parameters;
 use crate::service::registry::Registry;
 use crate::service::{heartbeat, parameter, traffic};
 
-/// For how long a vehicle at rest is left alone after the end of its long tick, µs: nine more of 5 ms.
-const LONGER_REST_US: u64 = 45_000;
+/// For how long a vehicle at rest is left alone after the end of its long tick of 20 ms, µs.
+const LONGER_REST_US: u64 = 30_000;
+/// Regular messages that are due within multiples of this leave together, µs.
+const TOGETHER_US: u64 = 5_000;
 
 /// A vehicle with its services.
 #[derive(Debug)]
@@ -129,8 +131,8 @@ impl Autopilot {
     }
 
     /// Until when it need not be flown on, µs, because the vehicle [rests](Vehicle::rests_until_us) and no service waits for a time of its own:
-    /// it does not matter when that is flown, if it is before anything is handed in. It ends when the next regular message is due; those that
-    /// are due before the long tick ends leave with its end. What the vehicle decides by itself meanwhile is told later, by 50 ms at most.
+    /// it does not matter when that is flown, if it is before anything is handed in. It ends within 5 ms after the next regular message is
+    /// due. What the vehicle decides by itself meanwhile is told later, by 50 ms at most.
     pub fn rests_until_us(&self) -> Option<u64> {
         let vehicle = &self.context.vehicle;
         let alone_until_us = self.alone_until_us();
@@ -138,7 +140,7 @@ impl Autopilot {
             return None;
         }
         let end_us = vehicle.rests_until_us()?;
-        let until_us = alone_until_us.clamp(end_us, end_us + LONGER_REST_US).next_multiple_of(TICK_US);
+        let until_us = alone_until_us.next_multiple_of(TOGETHER_US).min(end_us + LONGER_REST_US);
         Some(self.before_us + until_us)
     }
 

@@ -79,7 +79,7 @@ fn services_act_at_the_same_times_however_many_ticks_are_flown_at_once() {
     }
 }
 
-/// Whoever flies it may let it rest for ten long ticks, unless a message is due, something was asked of it, or it is about to boot.
+/// Whoever flies it may let it rest for up to 50 ms, unless a message is due, something was asked of it, or it is about to boot.
 #[test]
 fn it_need_not_be_flown_while_it_rests_and_nothing_is_asked() {
     let mut autopilot = autopilot();

@@ -13,9 +13,10 @@ use crate::pace::Pace;
 const BURST: Duration = Duration::from_millis(2);
 /// Ticks that one vehicle flies between two looks at the clock, which costs about as much as one. Several share them, as far as each flies
 /// [`AT_ONCE`].
-const MOST_TICKS: u64 = 10;
-/// Of each vehicle so many, or a multiple of it, if they are due: one that hovers flies them at once.
-const AT_ONCE: u64 = 5;
+const MOST_TICKS: u64 = 20;
+/// Of each vehicle so many, or a multiple of it, if they are due: one that hovers flies them at once. Half of its long tick: links wait for all
+/// vehicles.
+const AT_ONCE: u64 = 10;
 /// Messages of several ticks share a datagram where simulation time is fast; none waits much longer than this for others.
 const LONGEST_WAIT: Duration = Duration::from_millis(1);
 
@@ -154,6 +155,6 @@ mod tests {
 
     #[test]
     fn many_vehicles_fly_few_ticks_at_once() {
-        assert_eq!([0, 1, 2, 3, 4, 8, 9, 200].map(ticks_at_once), [10, 10, 5, 5, 5, 5, 5, 5]);
+        assert_eq!([0, 1, 2, 3, 4, 8, 9, 200].map(ticks_at_once), [20, 20, 10, 10, 10, 10, 10, 10]);
     }
 }

@@ -1,11 +1,11 @@
-//! Vehicles follow their clocks. One that rests may be behind its clock, until a regular message is due or by ten long ticks: it is flown on
+//! Vehicles follow their clocks. One that rests may be behind its clock, until a regular message is due or by 50 ms: it is flown on
 //! before anything is handed in to it and before anybody looks at it, so that all is as if it had been flown each tick, and only what it
 //! tells leaves later.
 //!
 //! ```text
-//!   clock, ms          10    15    20    25    30    35
-//!   nobody asks        ├─────────────────────────────┤   flown at 35, when a message is due: five long ticks
-//!   a message at 22    ├─────────────┼┼──────────────┤   flown to 22 before it takes effect, then at 23, and at 35
+//!   clock, ms          20    25    30    35    40    45
+//!   nobody asks        ├─────────────────────────────┤   flown at 45, when a message is due: a long tick and a part of the next
+//!   a message at 32    ├─────────────┼┼──────────────┤   flown to 32 before it takes effect, then at 33, and at 45
 //! ```
 
 use std::ops::Range;

@@ -5,8 +5,9 @@ use super::super::weathervane::IntoWind;
 use super::Vehicle;
 use crate::mode::Mode;
 
-/// Long ticks end at multiples of this, µs: half of the attitude controller's period, and a step of the plant in calm flight.
-const GRID_US: u64 = 5_000;
+/// Long ticks end at multiples of this, µs: two samples of the attitude controller. Fifty looks a second are plenty for machines that have
+/// nothing to do, none of whose times is shorter than some tenths of a second.
+const GRID_US: u64 = 20_000;
 /// Slower than this, m/s and rad/s, a vehicle whose reference rests rests, too.
 const SLOW_M_S: f64 = 0.5;
 const SLOW_RAD_S: f64 = 0.5;
