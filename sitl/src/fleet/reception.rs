@@ -62,6 +62,7 @@ impl Fleet {
         let armed = self.members.iter().any(|member| member.autopilot.vehicle().is_armed());
         let rules = SetupRules { without_key: self.accept_signing_setup, armed };
         self.hubs.iter_mut().for_each(|links| links.set_setup_rules(rules));
+        self.readiness.look();
         for _ in 0..hubs {
             let hub = self.reception.polled;
             self.reception.polled = (hub + 1) % hubs;

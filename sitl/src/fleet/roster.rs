@@ -20,7 +20,7 @@ use crate::failure::Failure;
 use crate::files::{Disk, FileLock, FileThread, LogFolder, plans_beside};
 use crate::flight_log::FlightLog;
 use crate::fmu::FlownFmu;
-use crate::link::Links;
+use crate::link::{Links, Readiness};
 use crate::radio_port::RadioPort;
 use crate::record::Participant;
 
@@ -32,6 +32,8 @@ const LONGEST_TRANSFER: Duration = Duration::from_millis(1);
 pub struct Fleet {
     pub(super) members: Vec<Member>,
     pub(super) hubs: Vec<Links>,
+    /// Of their sockets.
+    pub(super) readiness: Readiness,
     /// One for each hub.
     pub(super) signing: Vec<SigningKeeper>,
     /// Whether a key may be set while there is none.
@@ -58,11 +60,12 @@ impl Fleet {
     /// [`Failure`] of the first thing that cannot be used.
     pub fn open(settings: &Settings, unix_start_us: u64) -> Result<Self, Failure> {
         let folder = settings.logs.folder.as_deref().map(LogFolder::open).transpose()?;
+        let mut readiness = Readiness::new();
         let mut hubs: Vec<Links> = (0..)
             .zip(&settings.hubs)
             .map(|(hub, links)| {
                 let behind = settings.vehicles.iter().filter(|vehicle| vehicle.hub == hub);
-                Links::open(links, behind.map(|vehicle| vehicle.system_id).collect())
+                Links::open(links, behind.map(|vehicle| vehicle.system_id).collect(), &mut readiness)
             })
             .collect::<Result<_, _>>()?;
         let key = settings.signing_key.as_deref();
@@ -102,6 +105,7 @@ impl Fleet {
             reception: Reception::new(hubs.len()),
             onlooker: Onlooker::default(),
             hubs,
+            readiness,
             _files: files,
             shares_traffic: settings.fleet_traffic,
             keeps_step: settings.lockstep.is_some(),

@@ -18,6 +18,7 @@ use super::inbox::Inbox;
 use super::lost::Lost;
 use super::open::open;
 use super::peer::Peer;
+use super::readiness::Readiness;
 use super::signing_setup::{SetupRules, SigningSetup};
 use super::transport::{Event, Transport};
 use super::turns::Turns;
@@ -93,16 +94,20 @@ impl Link {
 }
 
 impl Links {
-    /// Opens all links, for the vehicles of some system ids.
+    /// Opens all links, for the vehicles of some system ids. `readiness` must be looked at before each [`Links::poll`].
     ///
     /// # Errors
     /// [`LinkError`] of the first one that cannot be opened.
-    pub fn open(specifications: &[LinkSpecification], systems: Vec<u8>) -> Result<Self, LinkError> {
+    pub fn open(
+        specifications: &[LinkSpecification],
+        systems: Vec<u8>,
+        readiness: &mut Readiness,
+    ) -> Result<Self, LinkError> {
         let links = specifications
             .iter()
             .map(|specification| {
                 Ok(Link {
-                    transport: open(&specification.endpoint)?,
+                    transport: open(&specification.endpoint, readiness)?,
                     peers: BTreeMap::new(),
                     strangers: Inbox::default(),
                 })

@@ -13,6 +13,7 @@ mod links;
 mod lost;
 mod open;
 mod peer;
+mod readiness;
 #[cfg(unix)]
 mod serial;
 mod signing_setup;
@@ -26,6 +27,7 @@ pub use endpoint::{Endpoint, LinkSpecification, default_links};
 pub use error::LinkError;
 pub use links::{Links, Received, Turn};
 pub use lost::Lost;
+pub use readiness::Readiness;
 pub use signing_setup::{SetupRefusal, SetupRules, SigningSetup};
 pub(crate) use transport::is_nothing_yet;
 pub(crate) use turns::Turns;

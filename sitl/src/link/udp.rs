@@ -4,10 +4,14 @@
 //! for one. Frames for a peer share datagrams: most of what sending costs is by the datagram.
 
 use std::collections::BTreeMap;
-use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
+use std::io::ErrorKind;
+use std::net::{SocketAddr, ToSocketAddrs};
 use std::time::{Duration, Instant};
 
+use mio::net::UdpSocket;
+
 use super::error::LinkError;
+use super::readiness::{Arrivals, Readiness};
 use super::strangers::Strangers;
 use super::transport::{Event, Numbers, Transport, is_nothing_yet};
 use crate::rarely::Rarely;
@@ -61,6 +65,7 @@ impl Peer {
 #[derive(Debug)]
 pub struct Udp {
     socket: UdpSocket,
+    arrivals: Arrivals,
     target: Option<SocketAddr>,
     peers: BTreeMap<u64, Peer>,
     strangers: Strangers,
@@ -72,16 +77,21 @@ pub struct Udp {
 
 impl Udp {
     /// A socket on a local address, with a peer to send to from the start if there is a target.
-    pub fn open(local: (&str, u16), target: Option<(&str, u16)>, link: &str) -> Result<Self, LinkError> {
+    pub fn open(
+        local: (&str, u16),
+        target: Option<(&str, u16)>,
+        link: &str,
+        readiness: &mut Readiness,
+    ) -> Result<Self, LinkError> {
         let failed = |source| LinkError::Socket {
             what: format!("UDP port {}:{}", local.0, local.1),
             link: link.to_owned(),
             source,
         };
         let target = target.map(|(host, port)| resolve(host, port, link)).transpose()?;
-        let socket = UdpSocket::bind(resolve(local.0, local.1, link)?).map_err(failed)?;
-        socket.set_nonblocking(true).map_err(failed)?;
+        let mut socket = UdpSocket::bind(resolve(local.0, local.1, link)?).map_err(failed)?;
         let mut udp = Self {
+            arrivals: readiness.watch(&mut socket),
             socket,
             target,
             peers: BTreeMap::new(),
@@ -136,7 +146,7 @@ impl Transport for Udp {
         let mut events = std::mem::take(&mut self.fresh);
         let (mut datagrams, mut bytes_read) = (0, 0);
         // What there is no room for is read as well: it must not keep those of other peers out of the socket.
-        while datagrams < MOST_DATAGRAMS && bytes_read < MOST_BYTES {
+        while self.arrivals.are_expected() && datagrams < MOST_DATAGRAMS && bytes_read < MOST_BYTES {
             datagrams += 1;
             match self.socket.recv_from(&mut self.buffer) {
                 Ok((length, address)) => {
@@ -145,6 +155,7 @@ impl Transport for Udp {
                     let bytes = self.buffer.get(..length).unwrap_or_default().to_vec();
                     events.push(Event::Bytes(number, bytes));
                 }
+                Err(error) if error.kind() == ErrorKind::WouldBlock => self.arrivals.are_over(),
                 Err(error) if is_nothing_yet(&error) => break,
                 // Nobody listens at a peer (yet): some systems tell it here.
                 Err(_) => {}
@@ -212,17 +223,19 @@ mod tests {
     use std::net::UdpSocket;
     use std::time::{Duration, Instant};
 
-    use super::{EXPIRY, Event, MOST_PEERS, MOST_SHARED, PAUSE, Transport, Udp};
+    use super::{EXPIRY, Event, MOST_PEERS, MOST_SHARED, PAUSE, Readiness, Transport, Udp};
 
     struct Bench {
         udp: Udp,
+        readiness: Readiness,
         start: Instant,
     }
 
     impl Bench {
         fn new(target: Option<(&str, u16)>) -> Self {
-            let udp = Udp::open(("127.0.0.1", 0), target, "udpin:0").expect("a free port");
-            Self { udp, start: Instant::now() }
+            let mut readiness = Readiness::new();
+            let udp = Udp::open(("127.0.0.1", 0), target, "udpin:0", &mut readiness).expect("a free port");
+            Self { udp, readiness, start: Instant::now() }
         }
 
         fn sender(&self) -> UdpSocket {
@@ -236,6 +249,7 @@ mod tests {
             sender.send(b"?").expect("sent");
             let mut others = Vec::new();
             loop {
+                self.readiness.look();
                 for event in self.udp.poll(self.start + after, &|_| usize::MAX) {
                     match event {
                         Event::Bytes(number, _) => return (number, others),
