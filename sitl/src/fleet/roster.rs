@@ -60,7 +60,7 @@ impl Fleet {
     /// [`Failure`] of the first thing that cannot be used.
     pub fn open(settings: &Settings, unix_start_us: u64) -> Result<Self, Failure> {
         let folder = settings.logs.folder.as_deref().map(LogFolder::open).transpose()?;
-        let mut readiness = Readiness::new();
+        let mut readiness = Readiness::default();
         let mut hubs: Vec<Links> = (0..)
             .zip(&settings.hubs)
             .map(|(hub, links)| {

@@ -12,7 +12,7 @@ use mio::{Events, Interest, Poll, Token};
 const MOST_EVENTS: usize = 1024;
 
 /// Watches sockets.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Readiness {
     /// `None`: the system cannot tell. All sockets are read then, at each look.
     watch: Option<Watch>,
@@ -29,14 +29,16 @@ struct Watch {
 #[derive(Clone, Debug)]
 pub struct Arrivals(Arc<AtomicBool>);
 
-impl Readiness {
-    /// Watches nothing yet.
-    pub fn new() -> Self {
+/// Watches nothing yet.
+impl Default for Readiness {
+    fn default() -> Self {
         let watch = Poll::new().map(|poll| Watch { poll, events: Events::with_capacity(MOST_EVENTS) });
         let watch = watch.inspect_err(|error| tracing::debug!("sockets are read one by one: {error}")).ok();
         Self { watch, sockets: Vec::new() }
     }
+}
 
+impl Readiness {
     /// Watches a socket from now on. It may have something to read already.
     pub fn watch(&mut self, socket: &mut UdpSocket) -> Arrivals {
         let arrivals = Arrivals(Arc::new(AtomicBool::new(true)));
@@ -116,7 +118,7 @@ mod tests {
 
     #[test]
     fn a_socket_is_to_be_read_when_something_has_come() {
-        let (mut readiness, mut sockets) = (Readiness::new(), [socket(), socket()]);
+        let (mut readiness, mut sockets) = (Readiness::default(), [socket(), socket()]);
         // What has come before it is watched is not overlooked.
         let sender = std::net::UdpSocket::bind("127.0.0.1:0").expect("a free port");
         let send = |to: &UdpSocket| sender.send_to(b"!", to.local_addr().expect("an address")).expect("sent");
@@ -143,7 +145,7 @@ mod tests {
     /// It stays to be read until it has been read empty: the system tells of it once only.
     #[test]
     fn what_was_left_is_not_forgotten() {
-        let (mut readiness, mut socket) = (Readiness::new(), socket());
+        let (mut readiness, mut socket) = (Readiness::default(), socket());
         let arrivals = readiness.watch(&mut socket);
         drain(&socket, &arrivals);
         let sender = std::net::UdpSocket::bind("127.0.0.1:0").expect("a free port");

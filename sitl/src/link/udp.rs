@@ -233,7 +233,7 @@ mod tests {
 
     impl Bench {
         fn new(target: Option<(&str, u16)>) -> Self {
-            let mut readiness = Readiness::new();
+            let mut readiness = Readiness::default();
             let udp = Udp::open(("127.0.0.1", 0), target, "udpin:0", &mut readiness).expect("a free port");
             Self { udp, readiness, start: Instant::now() }
         }
