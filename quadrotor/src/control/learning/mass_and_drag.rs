@@ -249,7 +249,10 @@ impl MassAndDrag {
         }
         let noise_m_s2 = noise_m_s2(&configuration.sensors, terms.filled, sampled_s);
         // Also of what is not learned from: where the thrust was before it changed shows the mass as soon as it has changed.
-        let shown = self.excitation.observe(&terms, interval_s, self.noise_along_m_s2(noise_m_s2));
+        let shown = {
+            let drag_1_s = self.estimate.mean().fixed_rows::<3>(1).into_owned();
+            self.excitation.observe(&terms, interval_s, (self.noise_along_m_s2(noise_m_s2), &drag_1_s))
+        };
         let moves = terms.velocity_m_s.norm() > AT_REST_M_S * terms.filled;
         let learns = moves && !is_saturated(configuration, sample);
         if learns {

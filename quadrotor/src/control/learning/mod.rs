@@ -1,6 +1,7 @@
 //! Mass and drag of the vehicle, learned in flight.
 
 pub(crate) mod bounded_estimate;
+pub(crate) mod coherence;
 pub(crate) mod excitation;
 pub(crate) mod gust_memory;
 pub(crate) mod mass_and_drag;
