@@ -202,14 +202,13 @@ fn bars_are_reported_for_every_kind() {
 }
 
 /// Bars that Laguerre MPC misses: flight and figure. Each is in the report, and each that is mended leaves this list.
-const MISSED: [(&str, &str); 8] = [
+const MISSED: [(&str, &str); 7] = [
     ("5 m north, mass believed 1.5 of the true one", "settled within 2 cm, s"),
     ("5 m north, rotor lag 0.02 s", "settled within 2 cm, s"),
     ("20 m north, rotor lag 0.1 s", "settled within 2 cm, s"),
     ("5 m down, rotor lag 0.15 s", "settled within 2 cm, s"),
     ("5 m north, 5 m east, 5 m up, rotor lag 0.15 s", "settled within 2 cm, s"),
     ("goals within 4 m that jump each second", "RMS distance, cm"),
-    ("goals within 30 m that jump each second", "beyond a limit, %"),
     ("5 m/s, reversed each 5 s", "RMS distance, cm"),
 ];
 
