@@ -272,8 +272,7 @@ impl Plant {
         let body = &state.body;
         body.velocity_m_s == Vector3::zeros()
             && body.body_rate_rad_s == Vector3::zeros()
-            && self.is_held(state, inputs)
-            && self.stopped(state, inputs).is_some()
+            && matches!(self.begin_step(state, inputs), BegunStep::Still(_))
     }
 
     /// Where what is held stands still, if it hardly moves and would hardly begin to. It stays there: the same is found there again.

@@ -13,7 +13,7 @@ use mio::net::UdpSocket;
 use super::error::LinkError;
 use super::readiness::{Arrivals, Readiness};
 use super::strangers::Strangers;
-use super::transport::{Event, Numbers, Transport, is_nothing_yet};
+use super::transport::{Event, Numbers, Transport};
 use crate::rarely::Rarely;
 
 /// A peer that has sent no valid frame for this long is forgotten.
@@ -156,7 +156,7 @@ impl Transport for Udp {
                     events.push(Event::Bytes(number, bytes));
                 }
                 Err(error) if error.kind() == ErrorKind::WouldBlock => self.arrivals.are_over(),
-                Err(error) if is_nothing_yet(&error) => break,
+                Err(error) if error.kind() == ErrorKind::Interrupted => break,
                 // Nobody listens at a peer (yet): some systems tell it here.
                 Err(_) => {}
             }

@@ -1,43 +1,22 @@
 //! The vehicle's mass and drag, learned from thrust and acceleration in flight.
 
-use nalgebra::{SVector, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::control::learning::bounded_estimate::{BoundedEstimate, Prior};
+use crate::control::learning::bounded_estimate::BoundedEstimate;
 use crate::control::learning::excitation::{Excitation, Shown};
 use crate::control::learning::gust_memory::{GustMemory, Surprise};
 use crate::control::learning::motion_equation::{
     MEMORY_S, MeasuredMotion, MotionEquation, Sampled, Terms, noise_of_positions, noise_of_velocities,
 };
+use crate::control::learning::prior_knowledge::{
+    DRAG_DEVIATION_1_S, MOST_FORCE_M_S2, UNKNOWNS, Unknowns, believed, prior,
+};
 use crate::control::learning::steady_thrust::SteadyThrust;
 use crate::{Belief, Configuration, GRAVITY_M_S2, Sensors, wrench_of_rotors};
 
-/// Learned: μ, the airframe's mass over the learned one; κ, drag per mass along north, east and down, 1/s; d, the
-/// acceleration by other forces, NED, m/s².
-const UNKNOWNS: usize = 7;
-type Unknowns = SVector<f64, UNKNOWNS>;
-
-/// Range of the learned mass, as a multiple of the airframe's.
-const MASS_RANGE: [f64; 2] = [0.4, 2.5];
-/// Share of the rotors' largest thrust that a learned mass may weigh.
-const LIFTED_SHARE: f64 = 0.9;
 /// Most inertia that a learned mass stands for, as a multiple of the configured one.
 const MOST_INERTIA_SHARE: f64 = 2.0;
-/// Most drag per mass, 1/s, unless half of that of the airframe is more. Published ones of quadrotors are from 0.1 to 1.
-const MOST_DRAG_1_S: f64 = 2.0;
-/// Most acceleration by other forces, m/s².
-const MOST_FORCE_M_S2: f64 = 30.0;
-
-/// Deviations before anything is learned. A payload or a wrong model is taken for as likely as a force of a third of the weight:
-/// at first a vertical push counts as both, and what the thrust then does to the acceleration tells which it was.
-const MASS_DEVIATION: f64 = 0.3;
-const DRAG_DEVIATION_1_S: f64 = 0.2;
-const FORCE_DEVIATION_M_S2: f64 = 3.0;
-/// How fast each may wander, per √s: the thrust sags with the battery, drag stays as it is, the wind changes.
-const MASS_WANDERING: f64 = 0.003;
-const DRAG_WANDERING_1_S: f64 = 0.003;
-const FORCE_WANDERING_M_S2: f64 = 0.3;
-
 /// Deviation of the equation of motion without noise of sensors, m/s²: what the model of rotors and their lag misses.
 const MODEL_NOISE_M_S2: f64 = 0.03;
 
@@ -148,7 +127,12 @@ impl MassAndDrag {
 
     /// The learned drag along the world axes, N·s/m.
     pub(crate) fn drag_n_s_m(&self, configuration: &Configuration) -> Vector3<f64> {
-        self.estimate.mean().fixed_rows::<3>(1) * self.mass_kg(configuration)
+        self.drag_1_s() * self.mass_kg(configuration)
+    }
+
+    /// The learned drag per mass along the world axes, 1/s.
+    fn drag_1_s(&self) -> Vector3<f64> {
+        self.estimate.mean().fixed_rows::<3>(1).into_owned()
     }
 
     /// Moments of inertia for a learned mass as a share of those that are configured. The mass does not tell them: a model that
@@ -249,10 +233,8 @@ impl MassAndDrag {
         }
         let noise_m_s2 = noise_m_s2(&configuration.sensors, terms.filled, sampled_s);
         // Also of what is not learned from: where the thrust was before it changed shows the mass as soon as it has changed.
-        let shown = {
-            let drag_1_s = self.estimate.mean().fixed_rows::<3>(1).into_owned();
-            self.excitation.observe(&terms, interval_s, (self.noise_along_m_s2(noise_m_s2), &drag_1_s))
-        };
+        let (along_m_s2, drag_1_s) = (self.noise_along_m_s2(noise_m_s2), self.drag_1_s());
+        let shown = self.excitation.observe(&terms, interval_s, (along_m_s2, &drag_1_s));
         let moves = terms.velocity_m_s.norm() > AT_REST_M_S * terms.filled;
         let learns = moves && !is_saturated(configuration, sample);
         if learns {
@@ -452,50 +434,6 @@ fn is_saturated(configuration: &Configuration, sample: &FlightSample<'_>) -> boo
     let margin = SATURATED_SHARE * (fastest - slowest);
     let is_free = |speed: &f64| *speed < fastest - margin;
     !sample.rotor_command_rad_s.iter().all(is_free)
-}
-
-/// What a configuration believes in.
-fn believed(configuration: &Configuration) -> Unknowns {
-    let mut mean = Unknowns::zeros();
-    mean[0] = 1.0 / configuration.controllers.mass_factor;
-    mean.fixed_rows_mut::<3>(1).copy_from(&configuration.drag_1_s());
-    mean
-}
-
-/// Range of the learned mass, as a multiple of the airframe's: one that flies is lifted by its rotors, with some to lean. What weighs
-/// more is a force.
-fn mass_range(configuration: &Configuration) -> [f64; 2] {
-    let [lightest, heaviest] = MASS_RANGE;
-    let (_, strongest_n) = configuration.airframe.thrust_range_n();
-    let lifted = LIFTED_SHARE * strongest_n / configuration.airframe.weight_n();
-    let believed = configuration.controllers.mass_factor;
-    [lightest, heaviest.min(lifted).max(1.0).max(believed)]
-}
-
-fn prior(configuration: &Configuration) -> Prior<UNKNOWNS> {
-    let of = |mass: f64, drag: f64, force: f64| {
-        Unknowns::from_fn(|i, _| match i {
-            0 => mass,
-            1..4 => drag,
-            _ => force,
-        })
-    };
-    let [lightest, heaviest] = mass_range(configuration);
-    let mut most = of(1.0 / lightest, MOST_DRAG_1_S, MOST_FORCE_M_S2);
-    for (axis, drag_1_s) in configuration.drag_1_s().iter().enumerate() {
-        most[1 + axis] = most[1 + axis].max(2.0 * drag_1_s);
-    }
-    // The variance grows by 2σ²/T per second.
-    let memory_s = |deviation: f64, wandering: f64| 2.0 * deviation * deviation / (wandering * wandering);
-    Prior {
-        deviation: of(MASS_DEVIATION, DRAG_DEVIATION_1_S, FORCE_DEVIATION_M_S2),
-        memory_s: of(
-            memory_s(MASS_DEVIATION, MASS_WANDERING),
-            memory_s(DRAG_DEVIATION_1_S, DRAG_WANDERING_1_S),
-            memory_s(FORCE_DEVIATION_M_S2, FORCE_WANDERING_M_S2),
-        ),
-        range: [of(1.0 / heaviest, 0.0, -MOST_FORCE_M_S2), most],
-    }
 }
 
 #[cfg(test)]

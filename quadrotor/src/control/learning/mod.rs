@@ -6,4 +6,5 @@ pub(crate) mod excitation;
 pub(crate) mod gust_memory;
 pub(crate) mod mass_and_drag;
 pub(crate) mod motion_equation;
+mod prior_knowledge;
 pub(crate) mod steady_thrust;
