@@ -225,7 +225,8 @@ fn wrong_mass(draw: &mut Draw, plan: &mut Plan) {
 }
 
 /// Numbers of a flight, the smaller the better.
-const FIGURES: [&str; 6] = ["off, m", "beyond, m", "aside, m", "settled, s", "tilt, °", "speed, share"];
+const FIGURES: [&str; 7] =
+    ["off, m", "beyond, m", "aside, m", "settled, s", "tilt, °", "speed, share", "vertical, share"];
 
 /// Those of a flight.
 fn figures(plan: &Plan, track: &Track) -> [f64; FIGURES.len()] {
@@ -248,6 +249,9 @@ fn figures(plan: &Plan, track: &Track) -> [f64; FIGURES.len()] {
         track.settled_s().min(999.0),
         most(&|moment| moment.tilt_rad() - limits.tilt_rad).to_degrees(),
         most(&|moment| moment.velocity_m_s.xy().norm()) / speed_m_s,
+        most(&|moment| {
+            (-moment.velocity_m_s.z / limits.speed_up_m_s).max(moment.velocity_m_s.z / limits.speed_down_m_s)
+        }),
     ]
 }
 

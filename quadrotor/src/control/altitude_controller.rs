@@ -28,8 +28,7 @@ pub struct AltitudeController {
 }
 
 impl AltitudeController {
-    /// Takes over a vehicle at height z, m, as if it had been at rest there: its whole velocity then
-    /// counts as motion to be explained, and is damped from the first sample on.
+    /// Takes over a vehicle at height z, m, as if it had been at rest there: its whole velocity is damped from the first sample on.
     pub fn new(z_m: f64) -> Self {
         let start =
             ControllerState::new(Vector3::new(z_m, 0.0, 0.0), Vector1::zeros(), Vector1::zeros()).keeping();
@@ -53,6 +52,7 @@ impl AltitudeController {
         let lag_s = configuration.airframe.mean_rotor_lag_s();
         let deviation =
             Vector3::new(error.x, seen.velocity_m_s - rate_m_s, seen.acceleration_m_s2 - reference.thrust.x);
+        self.take_over(design, &deviation, reference, range);
         let motion = MotionSample {
             deviation,
             change: measured - self.controller.measured() - Vector3::new(position, velocity, acceleration),
@@ -79,6 +79,21 @@ impl AltitudeController {
         let applied = Vector1::new(wanted.x.clamp(range.0, range.1));
         self.controller.apply(&applied);
         (applied.x, ControllerActivity::of(&step, &wanted, &applied))
+    }
+
+    /// Before the first sample of a vehicle in motion: the feedback by which a law that foresees limits would have damped it so far.
+    fn take_over(
+        &mut self,
+        design: &CascadeDesign,
+        deviation: &Vector3<f64>,
+        reference: &ReferenceMotion<1>,
+        (least, most): (f64, f64),
+    ) {
+        let Some(model) = design.altitude.motion.as_ref().filter(|_| self.observed.begins()) else { return };
+        let moving = Vector3::new(0.0, deviation.y, deviation.z);
+        let feedback = model.feedback_before(|increment| design.altitude.law.answer_to(increment), &moving);
+        let applied = Vector1::new((reference.thrust.x + feedback.x).clamp(least, most));
+        self.controller.turn_feedback(|_| applied - reference.thrust);
     }
 
     /// The part of the last command that the reference requires, m/s² down.

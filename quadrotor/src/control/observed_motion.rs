@@ -69,13 +69,31 @@ impl<const N: usize, const P: usize> MotionModel<N, P> {
             sample_time_s: self.sample_time_s,
         }
     }
+
+    /// The feedback v(k−1) of a law −K Δx, told by what it answers to an increment, that has been on since the vehicle rested, without
+    /// disturbances, and has it in this deviation now:
+    ///
+    /// ```text
+    /// v = −K A⁻¹ (x − B v)
+    /// ```
+    pub(crate) fn feedback_before(
+        &self,
+        answer: impl Fn(&SVector<f64, N>) -> SVector<f64, P>,
+        deviation: &SVector<f64, N>,
+    ) -> SVector<f64, P> {
+        let answer = |state: SVector<f64, N>| -> SVector<f64, P> { answer(&(self.inverse * state)) };
+        let by_input = |channel: usize| answer(self.by_input.column(channel).into_owned());
+        let identity = SMatrix::<f64, P, P>::identity();
+        let by_feedback = identity + SMatrix::from_fn(|row, column| by_input(column)[row]);
+        by_feedback.try_inverse().map_or_else(SVector::zeros, |inverse| inverse * answer(*deviation))
+    }
 }
 
 /// What is known of the motion at the last sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ObservedMotion<const N: usize, const P: usize> {
-    /// x(k−1) − x_r(k−1).
-    deviation: SVector<f64, N>,
+    /// x(k−1) − x_r(k−1); `None` before the first sample.
+    deviation: Option<SVector<f64, N>>,
     /// d, accelerations that the model does not explain.
     disturbance: SVector<f64, P>,
     /// What of it has lasted.
@@ -84,7 +102,7 @@ pub(crate) struct ObservedMotion<const N: usize, const P: usize> {
 
 impl<const N: usize, const P: usize> Default for ObservedMotion<N, P> {
     fn default() -> Self {
-        Self { deviation: SVector::zeros(), disturbance: SVector::zeros(), lasting: SVector::zeros() }
+        Self { deviation: None, disturbance: SVector::zeros(), lasting: SVector::zeros() }
     }
 }
 
@@ -104,7 +122,12 @@ pub(crate) struct MotionSample<const N: usize, const P: usize> {
 impl<const N: usize, const P: usize> ObservedMotion<N, P> {
     /// With a deviation at the last sample and a disturbance.
     pub(crate) fn new(deviation: SVector<f64, N>, disturbance: SVector<f64, P>) -> Self {
-        Self { deviation, disturbance, lasting: disturbance }
+        Self { deviation: Some(deviation), disturbance, lasting: disturbance }
+    }
+
+    /// Whether no sample has been seen yet.
+    pub(crate) fn begins(&self) -> bool {
+        self.deviation.is_none()
     }
 
     /// d.
@@ -138,24 +161,26 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
     /// A sample of a law that goes by measured increments, which another one may take over from: notes the deviation, and finds the
     /// disturbance without a model, as far as the accelerations at both ends of the sample do not explain how the rate has changed.
     fn watch(&mut self, MotionSample { deviation, change, .. }: &MotionSample<N, P>, sample_time_s: f64) {
+        let Some(before) = self.deviation.replace(*deviation) else { return };
         for channel in 0..P {
             let [rate, acceleration] = [1, 2].map(|derivative| N / P * channel + derivative);
-            let explained = (deviation[acceleration] + self.deviation[acceleration]) / 2.0;
+            let explained = (deviation[acceleration] + before[acceleration]) / 2.0;
             let missed = change[rate] / sample_time_s - explained - self.disturbance[channel];
             if missed.is_finite() {
                 self.disturbance[channel] += missed;
             }
         }
-        self.deviation = *deviation;
     }
 
     /// Goes on under another belief in what moves the vehicle: the last state counts as having so much more of some derivatives, and
     /// what an acceleration explains more, d explains less. The motion itself is what it was.
     pub(crate) fn believe(&mut self, more: &SVector<f64, N>) {
-        let believed = self.deviation + more;
+        let believed = self.deviation.map(|deviation| deviation + more);
         let less: SVector<f64, P> = SVector::from_fn(|channel, _| more[N / P * channel + 2]);
         let (disturbance, lasting) = (self.disturbance - less, self.lasting - less);
-        if are_finite(believed.as_slice()) && are_finite(disturbance.as_slice()) {
+        if believed.is_none_or(|believed| are_finite(believed.as_slice()))
+            && are_finite(disturbance.as_slice())
+        {
             *self = Self { deviation: believed, disturbance, lasting };
         }
     }
@@ -179,17 +204,80 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
         MotionSample { deviation, change, feedback, jump }: &MotionSample<N, P>,
     ) -> SVector<f64, N> {
         let driven = model.by_input * feedback;
-        let expected = model.transition * self.deviation - self.deviation
-            + driven
-            + model.by_disturbance * self.disturbance;
-        for channel in 0..P {
-            let rate = N / P * channel + 1;
-            let missed = (change[rate] - expected[rate]) / model.sample_time_s;
-            if missed.is_finite() {
-                self.disturbance[channel] += missed;
+        if let Some(before) = self.deviation.replace(*deviation) {
+            let expected =
+                model.transition * before - before + driven + model.by_disturbance * self.disturbance;
+            for channel in 0..P {
+                let rate = N / P * channel + 1;
+                let missed = (change[rate] - expected[rate]) / model.sample_time_s;
+                if missed.is_finite() {
+                    self.disturbance[channel] += missed;
+                }
             }
         }
-        self.deviation = *deviation;
         deviation - model.inverse * (deviation + jump - driven - model.by_disturbance * self.disturbance)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec; // used by dmatrix!
+
+    use lmpc::{Discretization, StateSpace};
+    use nalgebra::{Matrix1x3, Vector1, Vector3, dmatrix};
+
+    use super::{MotionModel, MotionSample, ObservedMotion};
+
+    const SAMPLE_TIME_S: f64 = 0.05;
+
+    /// z̈ = a, which follows its command with a lag of 30 ms.
+    fn model() -> MotionModel<3, 1> {
+        let plant = StateSpace::from_continuous(
+            &dmatrix![0.0, 1.0, 0.0; 0.0, 0.0, 1.0; 0.0, 0.0, -1.0 / 0.03],
+            &dmatrix![0.0; 0.0; 1.0 / 0.03],
+            &dmatrix![1.0, 0.0, 0.0],
+            SAMPLE_TIME_S,
+            Discretization::ZeroOrderHold,
+        );
+        MotionModel::new(&plant.expect("a plant"), &Vector1::zeros(), SAMPLE_TIME_S).expect("a model")
+    }
+
+    /// v(k) = −K x(k) flown from a throw: at each sample, the one before is found from the present state alone.
+    #[test]
+    fn the_feedback_before_is_the_one_that_was_flown() {
+        let model = model();
+        let gain = Matrix1x3::new(6.0, 4.5, 0.2);
+        let mut state = Vector3::new(0.3, -1.2, 2.0);
+        for _ in 0..40 {
+            let flown = -gain * state;
+            state = model.transition * state + model.by_input * flown;
+            let found = model.feedback_before(|increment| -gain * increment, &state);
+            assert!((found - flown).norm() < 1e-9, "{found} {flown}");
+        }
+    }
+
+    /// A vehicle that is under way at the first sample has not been pushed; one that was has been.
+    #[test]
+    fn motion_at_the_first_sample_is_no_disturbance() {
+        let model = model();
+        let mut observed = ObservedMotion::default();
+        let seen = |deviation: Vector3<f64>, before: Vector3<f64>| MotionSample {
+            deviation,
+            change: deviation - before,
+            feedback: Vector1::zeros(),
+            jump: Vector3::zeros(),
+        };
+        let times = (SAMPLE_TIME_S, 0.0);
+        assert!(observed.begins());
+        let start = Vector3::new(0.0, 0.7, 0.0);
+        let increment = observed.step(Some(&model), &seen(start, Vector3::zeros()), times);
+        assert!(!observed.begins() && observed.disturbance() == Vector1::zeros());
+        assert!((increment - Vector3::new(0.7 * SAMPLE_TIME_S, 0.0, 0.0)).norm() < 1e-12, "{increment}");
+        // 2 m/s² for a sample.
+        let pushed =
+            start + Vector3::new(0.7 * SAMPLE_TIME_S + SAMPLE_TIME_S.powi(2), 2.0 * SAMPLE_TIME_S, 0.0);
+        let increment = observed.step(Some(&model), &seen(pushed, start), times);
+        assert!((observed.disturbance().x - 2.0).abs() < 1e-12);
+        assert!((increment - (pushed - start)).norm() < 1e-12, "{increment}");
     }
 }

@@ -50,7 +50,7 @@ pub struct PositionController {
 }
 
 impl PositionController {
-    /// Takes over a vehicle at x, y, m, as if it had been at rest there.
+    /// Takes over a vehicle at x, y, m, as if it had been at rest there: its whole velocity is damped from the first sample on.
     pub fn new(position_m: Vector2<f64>) -> Self {
         let zero = Vector2::zeros();
         let measured = by_axis([position_m, zero, zero, zero, zero, zero]);
@@ -96,6 +96,7 @@ impl PositionController {
         let turn = Turn::along(&error, design.position_is_isotropic);
         let (moved, asked) = foreseen(law, &turn, reference, (ahead, asked));
         let deviation = with_position(&(measured - state_of(reference)), &error);
+        self.take_over(design, &deviation, reference, present_m_s2);
         let [jerk_jump, snap_jump] = reference.jumps_since(&self.reference);
         let [seen_jerk_jump, seen_snap_jump] =
             if reference.is_bent { [jerk_jump * BENT, zero] } else { [jerk_jump, snap_jump] };
@@ -139,6 +140,21 @@ impl PositionController {
         let applied = step.input.cap_magnitude(present_m_s2);
         self.controller.apply(&applied);
         (applied, ControllerActivity::of(&step, &step.input, &applied))
+    }
+
+    /// Before the first sample of a vehicle in motion: the feedback by which a law that foresees limits would have damped it so far.
+    fn take_over(
+        &mut self,
+        design: &CascadeDesign,
+        deviation: &SVector<f64, POSITION_STATES>,
+        reference: &ReferenceMotion<2>,
+        present_m_s2: f64,
+    ) {
+        let Some(model) = design.position.motion.as_ref().filter(|_| self.observed.begins()) else { return };
+        let moving = with_position(deviation, &Vector2::zeros());
+        let feedback = model.feedback_before(|increment| design.position.law.answer_to(increment), &moving);
+        let applied = (reference.thrust + feedback).cap_magnitude(present_m_s2);
+        self.controller.turn_feedback(|_| applied - reference.thrust);
     }
 
     /// The increment of a sample that limits go by, and what beside it only the feedback answers to. Noise looks like a force that comes and
