@@ -131,6 +131,8 @@ impl<const N: usize, const P: usize, const Q: usize, T: Precision> KalmanPredict
 
     /// x̂(k+1|k) from x̂(k|k−1), the input u(k) and the measurement y(k). A result that is not finite is
     /// replaced by the prediction without the measurement, or by the old estimate.
+    // Few numbers, which stay in registers.
+    #[inline(always)]
     pub fn predict(
         &self,
         estimate: &SVector<T, N>,

@@ -124,7 +124,6 @@ pub use kalman::{KalmanDesign, KalmanPredictor, NoiseCovariance};
 pub use laguerre::LaguerreBasis;
 pub use laguerre_mpc::LaguerreMpc;
 pub use limit::{Limit, Quantity};
-pub use limited_signals::MovedSignals;
 pub use model_increment::ModelIncrement;
 pub use posed_program::PosedProgram;
 pub use precision::Precision;

@@ -349,12 +349,14 @@ impl<T: Precision> LimitedSignals<T> {
         normal
     }
 
-    /// By how much a reference moves the signals: `ahead` tells x_r(k+m) − x_r(k) and u_r(k+m) − u_r(k).
-    pub(crate) fn moved<const N: usize, const P: usize>(
+    /// By how much a reference moves the signals: `ahead` tells x_r(k+m) − x_r(k) and u_r(k+m) − u_r(k). `None` when there is no room
+    /// for all of them.
+    pub(crate) fn moved<'a, const N: usize, const P: usize>(
         &self,
+        room: &'a mut [T],
         ahead: impl Fn(usize) -> (SVector<T, N>, SVector<T, P>),
-    ) -> MovedSignals<T> {
-        let mut moved = MovedSignals { values: [T::zero(); SIGNALS], count: self.count };
+    ) -> Option<&'a [T]> {
+        let moved = room.get_mut(..self.count)?;
         let mut latest = (usize::MAX, (SVector::zeros(), SVector::zeros()));
         for &(m, limit, sample) in &self.by_sample {
             if m != latest.0 {
@@ -364,25 +366,10 @@ impl<T: Precision> LimitedSignals<T> {
             let limit = &self.limits[limit];
             let signal = limit.signal(state.as_slice(), input.as_slice());
             for (component, value) in signal.iter().enumerate().take(limit.components) {
-                moved.values[limit.first_moved + component * limit.samples + sample] = *value;
+                moved[limit.first_moved + component * limit.samples + sample] = *value;
             }
         }
-        moved
-    }
-}
-
-/// How far the motion of a reference moves the limited signals of a controller: see
-/// [`StabilizedMpc::moved`](crate::StabilizedMpc::moved).
-#[derive(Clone, Debug, PartialEq)]
-pub struct MovedSignals<T = f64> {
-    values: [T; SIGNALS],
-    count: usize,
-}
-
-impl<T> MovedSignals<T> {
-    /// In the order of [`Sample::moved`].
-    pub fn values(&self) -> &[T] {
-        &self.values[..self.count]
+        Some(moved)
     }
 }
 

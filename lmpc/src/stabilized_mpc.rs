@@ -7,7 +7,7 @@ use crate::active_set::{ActiveSet, Start};
 use crate::controller_state::Decision;
 use crate::dense::{dot, least};
 use crate::dual_search::{Constraints, DualSearch};
-use crate::limited_signals::{FEW_SIGNALS, LimitedSignals, MovedSignals, PlanCoordinates, SIGNALS};
+use crate::limited_signals::{FEW_SIGNALS, LimitedSignals, PlanCoordinates, SIGNALS};
 use crate::placed_limit::along;
 use crate::precision::converted;
 use crate::worst_constraint::Worst;
@@ -121,9 +121,19 @@ impl<const N: usize, const P: usize, const Q: usize, const E: usize, T: Precisio
     }
 
     /// By how much a reference moves the limited signals, for [`Sample::moved`]: `ahead` tells x_r(k+m) − x_r(k) and
-    /// u_r(k+m) − u_r(k). It is called once for each limited sample m, in their order.
-    pub fn moved(&self, ahead: impl Fn(usize) -> (SVector<T, N>, SVector<T, P>)) -> MovedSignals<T> {
-        self.signals.moved(ahead)
+    /// u_r(k+m) − u_r(k). It is called once for each limited sample m, in their order. The values go to the beginning of `room`; `None`
+    /// when it has less than [`moved_signals`](Self::moved_signals).
+    pub fn moved<'a>(
+        &self,
+        room: &'a mut [T],
+        ahead: impl Fn(usize) -> (SVector<T, N>, SVector<T, P>),
+    ) -> Option<&'a [T]> {
+        self.signals.moved(room, ahead)
+    }
+
+    /// How many limited signals [`moved`](Self::moved) tells: components of limits on samples.
+    pub fn moved_signals(&self) -> usize {
+        self.signals.count()
     }
 
     /// How many bounds hold, on all samples together.

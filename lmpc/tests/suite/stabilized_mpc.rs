@@ -318,6 +318,25 @@ fn the_motion_of_the_reference_takes_room() {
     assert!((untold.input - lower.input).norm() > 1e-3);
 }
 
+/// Limit by limit, sample by sample: an input, then the second state, of a reference that moves by m, 2 m, 3 m and 4 m in m samples.
+#[test]
+fn the_motion_of_the_reference_is_told_limit_by_limit() {
+    let design = usual().design(1);
+    let law = Law::new(&design, &limits(0..30, 1.0), SLACK_COST).unwrap();
+    assert_eq!(law.moved_signals(), 59);
+    let ahead = |sample: usize| {
+        let m = sample as f64;
+        (Vector3::new(m, 2.0 * m, 3.0 * m), Vector1::new(4.0 * m))
+    };
+    let mut room = [f64::NAN; 60];
+    let moved = law.moved(&mut room, ahead).unwrap();
+    let inputs = (0..30).map(|m| 4.0 * f64::from(m));
+    let speeds = (1..30).map(|m| 2.0 * f64::from(m));
+    assert_eq!(moved, inputs.chain(speeds).collect::<Vec<_>>());
+    assert!(room[59].is_nan());
+    assert_eq!(law.moved(&mut [0.0; 58], ahead), None);
+}
+
 #[test]
 fn each_precondition_has_its_error() {
     let design = usual().design(1);

@@ -16,7 +16,6 @@ use crate::control::observation::Observation;
 use crate::control::position_controller::PositionController;
 use crate::control::required_thrust::RequiredThrust;
 use crate::control::rotor_command::RotorCommand;
-use crate::control::thrust_lag::ThrustLag;
 use crate::control::turned_way::{ForetoldWay, TurnedWay};
 use crate::control::unseen_motion::UnseenMotion;
 use crate::design::controller_limits::{
@@ -372,14 +371,12 @@ impl Cascade {
         required: &AttitudeReference,
         (thrust_n, least_thrust_n): (f64, f64),
     ) -> RotorCommand {
-        let controllers = &configuration.controllers;
-        let period_s = controllers.attitude.sample_time_s();
         let thrust_range_n = (thrust_n, least_thrust_n);
         let (asked, activity) =
             self.attitude.step(configuration, design, &seen.rotation(), required, thrust_range_n);
         let wanted = Wrench { thrust_n, torque_n_m: asked.torque_n_m() };
         let thrusts_n = design.mixer.rotor_thrusts_n(&wanted, least_thrust_n);
-        let lag = ThrustLag::new(&configuration.airframe, controllers.model, period_s);
+        let lag = &design.thrust_lag;
         let speed_rad_s =
             core::array::from_fn(|rotor| lag.command_rad_s(thrusts_n[rotor], seen.rotor_speed_rad_s[rotor]));
         let settled_rad_s = core::array::from_fn(|rotor| {

@@ -327,7 +327,7 @@ impl ControlState {
         (due, time_us): (Due, u64),
     ) -> Result<(), ControlError> {
         let configuration = &if due.attitude {
-            self.learn(&design.configuration, &measurement.motion, inputs.ground_z_m, time_us)
+            self.learn(design, &measurement.motion, inputs.ground_z_m, time_us)
         } else {
             self.believed(&design.configuration)
         };
@@ -434,13 +434,7 @@ impl ControlState {
         time_us: u64,
     ) {
         let times = (time_us, configuration.controllers.attitude.sample_time_us);
-        self.estimator.predict(
-            configuration,
-            &design.estimator,
-            &seen.measured,
-            &self.command.speed_rad_s,
-            times,
-        );
+        self.estimator.predict(configuration, design, &seen.measured, &self.command.speed_rad_s, times);
     }
 }
 

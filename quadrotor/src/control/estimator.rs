@@ -6,15 +6,8 @@ use serde::{Deserialize, Serialize};
 use crate::attitude::turned;
 use crate::control::euler_equation::angular_acceleration_rad_s2;
 use crate::control::mass_belief::MassBelief;
-use crate::design::estimator_design::EstimatorDesign;
 use crate::finite::are_finite;
-use crate::{Configuration, GRAVITY_M_S2, RigidBody, Sensors, Wrench, wrench_of_rotors};
-
-/// Share of the difference between a rotor's speed and its command that is left after a time:
-/// ω(t + T) = ω_command + (ω − ω_command) e^(−T/τ).
-pub(crate) fn lag_kept(configuration: &Configuration, time_s: f64) -> f64 {
-    libm::exp(-time_s / configuration.airframe.mean_rotor_lag_s())
-}
+use crate::{CascadeDesign, Configuration, GRAVITY_M_S2, RigidBody, Sensors, Wrench, wrench_of_rotors};
 
 /// The estimate of the vehicle's motion at the next sample of the attitude controller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -118,17 +111,18 @@ impl Estimator {
     pub(crate) fn predict(
         &mut self,
         configuration: &Configuration,
-        design: &EstimatorDesign,
+        cascade: &CascadeDesign,
         measured: &RigidBody,
         command_rad_s: &[f64; 4],
         (time_us, period_us): (u64, u64),
     ) {
+        let design = &cascade.estimator;
         // A sample time that has changed moves the sample away from the time that was predicted for.
         self.body = self.body_at(time_us);
         let believed = configuration.controllers.mass_factor;
         let airframe = &configuration.airframe;
         let before = self.rotor_speed_rad_s;
-        let kept = lag_kept(configuration, design.sample_time_s);
+        let kept = cascade.thrust_lag.kept();
         self.rotor_speed_rad_s = core::array::from_fn(|rotor| {
             command_rad_s[rotor] + (before[rotor] - command_rad_s[rotor]) * kept
         });

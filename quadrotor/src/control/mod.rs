@@ -20,7 +20,7 @@ pub(crate) mod governor;
 pub(crate) mod instants;
 mod largest_lean;
 mod largest_share;
-mod learning;
+pub(crate) mod learning;
 pub(crate) mod mass_belief;
 pub(crate) mod measurement;
 pub(crate) mod mixer;

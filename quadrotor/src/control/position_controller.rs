@@ -2,7 +2,7 @@
 
 use core::cell::Cell;
 
-use lmpc::{ControllerState, MovedSignals, Sample, StateFeedback, Step};
+use lmpc::{ControllerState, Sample, StateFeedback, Step};
 use nalgebra::{SVector, Vector2};
 use serde::{Deserialize, Serialize};
 
@@ -15,8 +15,8 @@ use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::braking_way::BrakingWay;
 use crate::design::capacities::{POSITION_FEW, POSITION_MANY};
 use crate::design::position_limits::{
-    AXIS_STATES, Asked, POSITION_STATES, closing_share, horizon_m, in_sight, planned_horizon_m,
-    position_bounds,
+    AXIS_STATES, Asked, POSITION_SIGNALS, POSITION_STATES, closing_share, horizon_m, in_sight,
+    planned_horizon_m, position_bounds,
 };
 use crate::design::translation_design::{PositionLaw, position_bandwidth_rad_s};
 use crate::guidance::reference_motion::ReferenceMotion;
@@ -94,7 +94,8 @@ impl PositionController {
         // The loop is the same in all horizontal directions. Along the error, no corner of a polygon of limits is nearer to the goal
         // than the way to it.
         let turn = Turn::along(&error, design.position_is_isotropic);
-        let (moved, asked) = foreseen(law, &turn, reference, (ahead, asked));
+        let mut room = [0.0; POSITION_SIGNALS];
+        let (moved, asked) = foreseen(law, &turn, reference, (ahead, asked), &mut room);
         let deviation = with_position(&(measured - state_of(reference)), &error);
         self.take_over(design, &deviation, reference, present_m_s2);
         let [jerk_jump, snap_jump] = reference.jumps_since(&self.reference);
@@ -121,6 +122,7 @@ impl PositionController {
             delay_s: BrakingWay::delay_s(&configuration.limits),
         });
         let lean = (present_m_s2, lasting_m_s2(reference, &lasting, &asked));
+
         let bounds = position_bounds(&configuration.limits, lean, &asked, under_way);
         let sample = Sample {
             measured: turn.state(&measured),
@@ -132,7 +134,7 @@ impl PositionController {
             input_reference: turn.vector(&reference.thrust),
             disturbance: disturbance_m_s2,
             upper: &BrakingWay::bounds_behind(&bounds, way.as_ref()),
-            moved: moved.as_ref().map_or(&[], MovedSignals::values),
+            moved: moved.unwrap_or_default(),
             ..Sample::default()
         };
         let step = self.step_along(law, &turn, &sample, &turn.state(&passing));
@@ -262,12 +264,13 @@ fn planned_error_m(
 
 /// By how much the reference moves what the law foresees, in turned axes, and what it will ask for. Where it rests there is nothing to
 /// look ahead at.
-fn foreseen(
+fn foreseen<'a>(
     law: &PositionLaw,
     turn: &Turn,
     reference: &ReferenceMotion<2>,
     (ahead, asked): (impl Fn(usize) -> ReferenceMotion<2>, impl Fn(usize) -> Option<ReferenceMotion<2>>),
-) -> (Option<MovedSignals>, Asked) {
+    room: &'a mut [f64],
+) -> (Option<&'a [f64]>, Asked) {
     if reference.is_at_rest() {
         return (None, Asked::default());
     }
@@ -279,7 +282,7 @@ fn foreseen(
         known[place].set(Some(then));
         then
     };
-    let moved = law.moved(|sample| {
+    let moved = law.moved(room, |sample| {
         let then = ahead(sample);
         let state = turn.state(&(state_of(&then) - state_of(reference)));
         (state, turn.vector(&(then.thrust - reference.thrust)))

@@ -1,6 +1,6 @@
 //! Rotor commands under which the thrust, not the speed, answers with the rotors' lag.
 
-use crate::{Airframe, PredictionModel};
+use crate::{Airframe, Configuration, PredictionModel};
 
 /// A rotor's speed ω follows its command with a first-order lag, and its thrust is f = k₁ ω². Commanding √(f_c/k₁) makes the
 /// thrust answer neither evenly nor in proportion: it rises slower than it falls, so that torques that come and go cost lift.
@@ -14,8 +14,10 @@ use crate::{Airframe, PredictionModel};
 /// f and the four rotors' torques are then linear, as the controllers' models have them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ThrustLag {
-    /// κ, what is left of a difference after a sample; `None` when commands are to act at once.
-    kept: Option<f64>,
+    /// κ, what is left of a difference between a rotor's speed and its command after a sample.
+    kept: f64,
+    /// Whether commands allow for it, instead of being taken to act at once.
+    is_foreseen: bool,
     /// 1/(1 − κ) and 1/k₁: all rotors are multiplied by them.
     per_rest: f64,
     per_coefficient_1_n_s2: f64,
@@ -24,11 +26,18 @@ pub(crate) struct ThrustLag {
 }
 
 impl ThrustLag {
+    /// For the commands of an attitude controller.
+    pub(crate) fn of(configuration: &Configuration) -> Self {
+        let controllers = &configuration.controllers;
+        Self::new(&configuration.airframe, controllers.model, controllers.attitude.sample_time_s())
+    }
+
     /// For commands that are held for `sample_time_s`.
-    pub(crate) fn new(airframe: &Airframe, model: PredictionModel, sample_time_s: f64) -> Self {
+    fn new(airframe: &Airframe, model: PredictionModel, sample_time_s: f64) -> Self {
         let kept = libm::exp(-sample_time_s / airframe.mean_rotor_lag_s());
         Self {
-            kept: (model == PredictionModel::InnerLoops).then_some(kept),
+            kept,
+            is_foreseen: model == PredictionModel::InnerLoops,
             per_rest: 1.0 / (1.0 - kept),
             per_coefficient_1_n_s2: 1.0 / airframe.thrust_coefficient_n_s2,
             coefficient_n_s2: airframe.thrust_coefficient_n_s2,
@@ -36,17 +45,21 @@ impl ThrustLag {
         }
     }
 
+    /// κ.
+    pub(crate) fn kept(&self) -> f64 {
+        self.kept
+    }
+
     /// The command, rad/s, for a thrust, N, of a rotor at a speed, rad/s; within the range of speeds.
     pub(crate) fn command_rad_s(&self, thrust_n: f64, speed_rad_s: f64) -> f64 {
         let k1 = self.coefficient_n_s2;
         let (slowest, fastest) = self.speed_range_rad_s;
         let speed_of = |thrust_n: f64| libm::sqrt(thrust_n.max(0.0) * self.per_coefficient_1_n_s2);
-        let command = match self.kept {
-            Some(kept) => {
-                let after = thrust_n + (k1 * speed_rad_s * speed_rad_s - thrust_n) * kept;
-                (speed_of(after) - kept * speed_rad_s) * self.per_rest
-            }
-            None => speed_of(thrust_n),
+        let command = if self.is_foreseen {
+            let after = thrust_n + (k1 * speed_rad_s * speed_rad_s - thrust_n) * self.kept;
+            (speed_of(after) - self.kept * speed_rad_s) * self.per_rest
+        } else {
+            speed_of(thrust_n)
         };
         command.clamp(slowest, fastest)
     }
@@ -54,9 +67,11 @@ impl ThrustLag {
     /// The speed, rad/s, at which the commanded thrust is the one that a command, rad/s, stands for: a lower one than was asked
     /// for when the rotor cannot turn fast enough.
     pub(crate) fn settled_rad_s(&self, command_rad_s: f64, speed_rad_s: f64) -> f64 {
-        let Some(kept) = self.kept else { return command_rad_s };
-        let after = command_rad_s + (speed_rad_s - command_rad_s) * kept;
-        libm::sqrt(((after * after - speed_rad_s * speed_rad_s * kept) * self.per_rest).max(0.0))
+        if !self.is_foreseen {
+            return command_rad_s;
+        }
+        let after = command_rad_s + (speed_rad_s - command_rad_s) * self.kept;
+        libm::sqrt(((after * after - speed_rad_s * speed_rad_s * self.kept) * self.per_rest).max(0.0))
     }
 }
 

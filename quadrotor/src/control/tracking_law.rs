@@ -3,8 +3,8 @@
 use alloc::vec::Vec;
 
 use lmpc::{
-    Augmented, Controller, ControllerState, DesignError, Dlqr, Limit, LmpcDesign, MovedSignals, Quantity,
-    Sample, SignalLimit, StabilizedDesign, StabilizedMpc, StateFeedback, StateSpaceMpc, StateSpaceMpcDesign,
+    Augmented, Controller, ControllerState, DesignError, Dlqr, Limit, LmpcDesign, Quantity, Sample,
+    SignalLimit, StabilizedDesign, StabilizedMpc, StateFeedback, StateSpaceMpc, StateSpaceMpcDesign,
     StateSpaceMpcWeights, Step, Weights,
 };
 use nalgebra::{DMatrix, SVector};
@@ -84,15 +84,26 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
         matches!(self, Self::StateSpace(_))
     }
 
-    /// By how much the motion of the reference moves what a law foresees; `None` of a law that foresees no absolute signals.
-    pub(crate) fn moved(
+    /// By how much the motion of the reference moves what a law foresees, in the room for that; `None` of a law that foresees no absolute
+    /// signals.
+    pub(crate) fn moved<'a>(
         &self,
+        room: &'a mut [f64],
         ahead: impl Fn(usize) -> (SVector<f64, N>, SVector<f64, P>),
-    ) -> Option<MovedSignals> {
+    ) -> Option<&'a [f64]> {
         match self {
-            Self::FewTerms(law) => Some(law.moved(ahead)),
-            Self::ManyTerms(law) => Some(law.moved(ahead)),
+            Self::FewTerms(law) => law.moved(room, ahead),
+            Self::ManyTerms(law) => law.moved(room, ahead),
             Self::StateSpace(_) | Self::Linear(_) => None,
+        }
+    }
+
+    /// How many signals a law foresees, absolute ones.
+    pub(crate) fn moved_signals(&self) -> usize {
+        match self {
+            Self::FewTerms(law) => law.moved_signals(),
+            Self::ManyTerms(law) => law.moved_signals(),
+            Self::StateSpace(_) | Self::Linear(_) => 0,
         }
     }
 

@@ -25,6 +25,9 @@ const LEAST: f64 = 0.1;
 /// What stands for no bound, m/s.
 const UNBOUNDED_M_S: f64 = 1e9;
 
+/// Limited signals of [`braking_limits`] at most: two horizontal ones for each slope and sample.
+pub(crate) const BRAKING_SIGNALS: usize = 2 * SLOPES_1_S.len() * SAMPLES.len();
+
 /// v + c x along both axes, one limit for each slope c, with the states of
 /// [`PositionDesign`](crate::design::translation_design::PositionDesign).
 pub(crate) fn braking_limits(sample_time_s: f64) -> [SignalLimit; SLOPES_1_S.len()] {

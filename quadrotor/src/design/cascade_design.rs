@@ -5,6 +5,8 @@ use alloc::sync::Arc;
 use lmpc::{Augmented, DesignError, LaguerreBasis, LmpcDesign, Weighting, Weights, spectral_radius};
 
 use crate::configuration::validation::validate;
+use crate::control::learning::averaging::SampledAveraging;
+use crate::control::thrust_lag::ThrustLag;
 use crate::design::attitude_design::AttitudeDesign;
 use crate::design::attitude_loop::AttitudeLoop;
 use crate::design::estimator_design::EstimatorDesign;
@@ -60,6 +62,8 @@ pub struct CascadeDesign {
     pub(crate) position_is_isotropic: bool,
     pub(crate) estimator: EstimatorDesign,
     pub(crate) mixer: Mixer,
+    pub(crate) thrust_lag: ThrustLag,
+    pub(crate) averaging: SampledAveraging,
     reports: [DesignReport; 3],
 }
 
@@ -81,6 +85,8 @@ impl CascadeDesign {
             position_is_isotropic: is_isotropic(configuration),
             estimator: estimator_design(configuration)?,
             mixer,
+            thrust_lag: ThrustLag::of(configuration),
+            averaging: SampledAveraging::new(&configuration.controllers.attitude),
             reports: [altitude.1, position.1, attitude_report],
         })
     }
@@ -117,6 +123,8 @@ impl CascadeDesign {
             self.estimator = designed;
         }
         self.mixer = mixer;
+        self.thrust_lag = ThrustLag::of(configuration);
+        self.averaging = SampledAveraging::new(&configuration.controllers.attitude);
         self.position_is_isotropic = is_isotropic(configuration);
         Ok(redesigned)
     }

@@ -61,6 +61,8 @@ impl TranslationAxis {
 
     /// Position, m, velocity, m/s, and unexplained acceleration, m/s², at the next sample, from those at this one, the acceleration
     /// by the model until then, m/s², and the measured position and velocity.
+    // The estimate stays in registers.
+    #[inline(always)]
     pub(crate) fn predict(
         &self,
         estimate: &[f64; 3],

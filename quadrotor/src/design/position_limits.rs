@@ -6,6 +6,7 @@ use lmpc::SignalLimit;
 use nalgebra::Vector2;
 
 use crate::control::demand::FOLLOWED;
+use crate::design::braking_way::BRAKING_SIGNALS;
 use crate::design::limited_samples::{in_time, one_in_time};
 use crate::{ControllerKind, GRAVITY_M_S2, Limits};
 
@@ -15,6 +16,12 @@ const SIDES: usize = 24;
 const COARSE_SIDES: usize = 8;
 /// Bounds, one per side.
 pub(crate) const POSITION_BOUNDS: usize = 3 * SIDES + 2 * COARSE_SIDES;
+
+/// Limited signals of [`position_limits`] at most: two horizontal ones of each limit at each of its samples.
+const LIMITED_SIGNALS: usize =
+    2 * (PRESENT_TILT.len() + TILT.len() + TURNING.len() + LEANING.len() + 2 + MOVING.len());
+/// Those of the position controller: of these limits and of the way to brake on.
+pub(crate) const POSITION_SIGNALS: usize = LIMITED_SIGNALS + BRAKING_SIGNALS;
 
 /// Samples of the tilt command for which the present thrust counts.
 static PRESENT_TILT: &[usize] = &[0, 1, 2, 3, 4];

@@ -12,7 +12,7 @@ use crate::design::capacities::{ALTITUDE_FEW, ALTITUDE_MANY, POSITION_FEW, POSIT
 use crate::design::cascade_design::DesignReport;
 use crate::design::linear_models::{altitude_model, altitude_model_with_lag, double_integrators};
 use crate::design::loop_problem::LoopProblem;
-use crate::design::position_limits::{POSITION_STATES, first_moving, position_limits};
+use crate::design::position_limits::{POSITION_SIGNALS, POSITION_STATES, first_moving, position_limits};
 use crate::design::printed_design::printed_design;
 use crate::design::stabilized_law::StabilizedLaw;
 use crate::{Configuration, ConfigurationError, ControllerKind, PredictionModel};
@@ -88,6 +88,13 @@ pub(crate) fn position_design(
             let problem =
                 position_problem(configuration, &attitude)?.also_within(braking_limits(sample_time_s));
             let (law, report) = StabilizedLaw::new(controllers.kind, &problem)?.law_and_report();
+            if law.moved_signals() > POSITION_SIGNALS {
+                return Err(DesignError::Dimension {
+                    name: "limited signals on all samples",
+                    expected: (POSITION_SIGNALS, 1),
+                    actual: (law.moved_signals(), 1),
+                });
+            }
             let motion = by_motion(
                 controllers.kind,
                 (problem.model().plant(), &configuration.drag_1_s().xy()),
@@ -175,4 +182,28 @@ pub(crate) fn position_bandwidth_rad_s(
 ) -> f64 {
     let Some(attitude) = attitude else { return PRINTED_POSITION_RAD_S };
     DELAY_SHARE / (attitude.delay_s() + configuration.controllers.position.sample_time_s() / 2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::design::position_limits::POSITION_SIGNALS;
+    use crate::{CascadeDesign, Configuration};
+
+    /// All of the room for signals is taken by default, and it is enough for other sample times and rotors.
+    #[test]
+    fn there_is_room_for_each_signal() {
+        let signals = |sample_time_us: u64, rotor_time_constant_s: f64| {
+            let mut configuration = Configuration::default();
+            configuration.controllers.position.sample_time_us = sample_time_us;
+            configuration.airframe.rotor_time_constant_s = rotor_time_constant_s;
+            CascadeDesign::new(&configuration).expect("a design").position.law.moved_signals()
+        };
+        assert_eq!(signals(50_000, 0.03), POSITION_SIGNALS);
+        for sample_time_us in [10_000, 20_000, 40_000, 60_000, 80_000, 100_000, 150_000] {
+            for rotor_time_constant_s in [0.01, 0.1] {
+                let signals = signals(sample_time_us, rotor_time_constant_s);
+                assert!((1..=POSITION_SIGNALS).contains(&signals), "{sample_time_us} µs: {signals}");
+            }
+        }
+    }
 }

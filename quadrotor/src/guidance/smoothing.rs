@@ -83,6 +83,8 @@ impl Smoothing {
     }
 
     /// What the jumps of the jerk after a piece of a profile have made of its derivatives until a time, s.
+    // Its sums stay in registers: read back together from where they were stored one by one, they would have to wait.
+    #[inline(always)]
     pub fn of_jumps(&self, profile: &MotionProfile, first: usize, time_s: f64) -> [f64; 5] {
         let mut made = [0.0; 5];
         for (start_s, jump) in profile.jumps(first) {

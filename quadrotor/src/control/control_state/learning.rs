@@ -4,6 +4,7 @@ use super::ControlState;
 use crate::control::control_inputs::ControlLaw;
 use crate::control::learning::mass_and_drag::FlightSample;
 use crate::control::learning::motion_equation::MeasuredMotion;
+use crate::design::loop_design::LoopDesign;
 use crate::{Belief, Configuration, RigidBody};
 
 impl ControlState {
@@ -20,7 +21,7 @@ impl ControlState {
     /// Learns mass and drag from the motion until now, and goes on with the configuration that has them.
     pub(super) fn learn(
         &mut self,
-        configuration: &Configuration,
+        LoopDesign { configuration, cascade, .. }: &LoopDesign,
         measured: &RigidBody,
         ground_z_m: f64,
         time_us: u64,
@@ -45,6 +46,7 @@ impl ControlState {
             rotor_speed_rad_s: &self.estimator.rotor_speed_rad_s(),
             rotor_command_rad_s: &self.command.speed_rad_s,
             time_us,
+            averaging: &cascade.averaging,
         };
         if self.learned.observe(configuration, &sample) {
             self.believe(&believed, configuration)

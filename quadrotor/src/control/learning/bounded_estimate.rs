@@ -8,14 +8,11 @@ use crate::finite::are_finite;
 /// What rounding may add to a variance.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
-/// What is known of N numbers before anything is measured, and how it is forgotten.
+/// What is known of N numbers before anything is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Prior<const N: usize> {
     /// Standard deviation of each.
     pub(crate) deviation: SVector<f64, N>,
-    /// Time in which what was learned of each fades, s. Forgetting ends at the prior's deviation, so that without
-    /// excitation nothing winds up.
-    pub(crate) memory_s: SVector<f64, N>,
     /// Range that an estimate never leaves.
     pub(crate) range: [SVector<f64, N>; 2],
 }
@@ -30,17 +27,6 @@ pub(crate) struct BoundedEstimate<const N: usize> {
 impl<const N: usize> Prior<N> {
     fn covariance(&self) -> SMatrix<f64, N, N> {
         SMatrix::from_diagonal(&self.deviation.component_mul(&self.deviation))
-    }
-
-    /// D of [`BoundedEstimate::forget`]. Neighbours are often remembered for the same time.
-    fn kept(&self, time_s: f64) -> SVector<f64, N> {
-        let mut latest = (f64::NAN, f64::NAN);
-        self.memory_s.map(|memory_s| {
-            if memory_s != latest.0 {
-                latest = (memory_s, libm::exp(-time_s / memory_s));
-            }
-            latest.1
-        })
     }
 
     fn clamped(&self, mean: &SVector<f64, N>) -> SVector<f64, N> {
@@ -69,9 +55,9 @@ impl<const N: usize> BoundedEstimate<N> {
         }
     }
 
-    /// Forgets for a time, s: P ← D P D + (1 − D²) P₀ with D = e^(−t/T) for each number. A covariance stays one.
-    pub(crate) fn forget(&mut self, prior: &Prior<N>, time_s: f64) {
-        let kept = prior.kept(time_s);
+    /// Forgets for a time t: P ← D P D + (1 − D²) P₀ with D = e^(−t/T), what is kept of each number. A covariance stays one. It ends
+    /// at the prior's deviation, so that without excitation nothing winds up.
+    pub(crate) fn forget(&mut self, prior: &Prior<N>, kept: &SVector<f64, N>) {
         for (i, column) in self.covariance.as_mut_slice().chunks_exact_mut(N).enumerate() {
             for (number, other) in column.iter_mut().zip(kept.as_slice()) {
                 *number *= other * kept[i];
@@ -166,7 +152,6 @@ mod tests {
     fn prior() -> Prior<3> {
         Prior {
             deviation: Vector3::new(0.5, 0.3, 3.0),
-            memory_s: Vector3::new(100.0, 50.0, 10.0),
             range: [Vector3::new(0.4, 0.0, -30.0), Vector3::new(2.5, 2.0, 30.0)],
         }
     }
@@ -200,12 +185,16 @@ mod tests {
         }
     }
 
+    /// What is kept after a time, s.
+    fn kept(time_s: f64) -> Vector3<f64> {
+        Vector3::new(100.0, 50.0, 10.0).map(|memory_s| f64::exp(-time_s / memory_s))
+    }
+
     /// What is learned of the sum of two numbers goes to each by its variance, and to the other one beyond a bound.
     #[test]
     fn a_bound_hands_the_rest_on() {
         let prior = Prior {
             deviation: Vector2::new(1.0, 2.0),
-            memory_s: Vector2::new(1.0, 1.0),
             range: [Vector2::new(-1.0, -100.0), Vector2::new(1.0, 100.0)],
         };
         let mut estimate = BoundedEstimate::new(&prior, &Vector2::zeros());
@@ -224,7 +213,7 @@ mod tests {
         estimate.update(&prior, &[true; 3], &Vector3::new(1.0, 0.0, 0.0), (1.4, 1e-6));
         let learned = *estimate.mean();
         for _ in 0..10 {
-            estimate.forget(&prior, 1_000.0);
+            estimate.forget(&prior, &kept(1_000.0));
         }
         let mut open = estimate;
         open.open(&prior, &[true; 3]);
@@ -253,7 +242,7 @@ mod tests {
             let mut estimate = BoundedEstimate::new(&prior, &Vector3::new(1.0, 0.0, 0.0));
             let scaled = |number: f64| -> f64 { if tame && number.is_finite() { 20.0 * number.sin() } else { number } };
             for (row, value, variance, time_s, learned) in measurements {
-                estimate.forget(&prior, time_s);
+                estimate.forget(&prior, &kept(time_s));
                 let variance: f64 = if tame { f64::abs(variance).clamp(1e-4, 1e3) } else { variance };
                 let row = Vector3::from(row.map(scaled));
                 estimate.update(&prior, &learned, &row, (scaled(value), variance));

@@ -7,7 +7,7 @@ use crate::control::learning::coherence::Coherence;
 use crate::control::learning::motion_equation::Terms;
 
 /// Time over which what is steady is averaged, s.
-const STEADY_S: f64 = 3.0;
+pub(super) const STEADY_S: f64 = 3.0;
 /// Changes of the thrust and of the acceleration that show a mass, m/s², and by how many deviations of the noise they exceed it.
 const MASS_M_S2: f64 = 0.4;
 const MASS_DEVIATIONS: f64 = 4.0;
@@ -74,11 +74,11 @@ impl Excitation {
 
     /// What the equation of an interval shows under noise of this deviation, m/s², if the vehicle has this drag per mass, 1/s.
     ///
-    /// Of a filter that is hardly filled, noise is a large share. What is steady begins anew when it is known twice as well.
+    /// A share of it comes into what is steady. Of a filter that is hardly filled, noise is a large share. What is steady begins anew when it is known twice as well.
     pub(crate) fn observe(
         &mut self,
         terms: &Terms,
-        interval_s: f64,
+        share: f64,
         (noise_m_s2, drag_1_s): (f64, &Vector3<f64>),
     ) -> Shown {
         let now = Moving::of(terms, drag_1_s);
@@ -91,7 +91,6 @@ impl Excitation {
         }));
         let least_m_s2 = MASS_M_S2 + MASS_DEVIATIONS * libm::hypot(deviation_m_s2, known.deviation_m_s2);
         let steady = &mut known.motion;
-        let share = -libm::expm1(-interval_s / STEADY_S);
         steady.follow(&now, share);
         let along_m_s2 = libm::fabs(now.thrust_m_s2 - steady.thrust_m_s2)
             .min(libm::fabs(now.acceleration_m_s2 - steady.acceleration_m_s2));

@@ -3,6 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
+use crate::control::learning::averaging::{Averaging, SampledAveraging};
 use crate::control::learning::bounded_estimate::BoundedEstimate;
 use crate::control::learning::excitation::{Excitation, Shown};
 use crate::control::learning::gust_memory::{GustMemory, Surprise};
@@ -25,7 +26,7 @@ const MODEL_NOISE_M_S2: f64 = 0.03;
 const SURPRISE_M_S2: f64 = 0.75;
 const SURPRISE_DEVIATIONS: f64 = 5.0;
 /// Time over which a force is averaged, to which its change is compared, s.
-const STEADY_FORCE_S: f64 = 3.0;
+pub(super) const STEADY_FORCE_S: f64 = 3.0;
 /// Time after a surprise, or a start, in which there is no other one, s.
 const SETTLING_S: f64 = 1.5;
 /// The part of it, s, in which a steady force is found: it is no gust.
@@ -33,7 +34,7 @@ const BEGINNING_S: f64 = 0.5;
 /// So many deviations of what is not known of the drag are drag.
 const DRAG_DEVIATIONS: f64 = 2.0;
 /// Time in which a gust is forgotten, s: another one follows.
-const GUSTY_S: f64 = 10.0;
+pub(super) const GUSTY_S: f64 = 10.0;
 /// Surprises of late, each of which counts less by e within [`GUSTY_S`], beyond which the next one is a gust.
 const MOST_SURPRISES: f64 = 1.5;
 /// A surprise may be a gust while the thrust per mass mostly keeps within this share of it.
@@ -43,7 +44,7 @@ const GUST_SWINGS: f64 = 5.0;
 
 /// Time from one equation that is learned from to the next, µs, when a flight has settled: short beside the memory of the filter, so that
 /// those between them tell nothing that the next one does not.
-const LEARNS_EACH_US: u64 = 20_000;
+pub(super) const LEARNS_EACH_US: u64 = 20_000;
 /// Less thrust than this share of the weight is free fall, which shows no mass.
 const LEAST_THRUST_SHARE: f64 = 0.2;
 /// Slower than this, m/s, by what the filter has taken in of the velocity, it may stand on something that carries it.
@@ -70,6 +71,8 @@ pub(crate) struct FlightSample<'a> {
     pub(crate) rotor_command_rad_s: &'a [f64; 4],
     /// When, µs.
     pub(crate) time_us: u64,
+    /// Of samples like this one.
+    pub(crate) averaging: &'a SampledAveraging,
 }
 
 /// Learns mass and drag, with the forces beside them.
@@ -217,7 +220,7 @@ impl MassAndDrag {
         let FlightSample { motion, velocity_m_s: estimated_velocity_m_s, attitude, time_us, .. } = *sample;
         let sampled = Sampled { motion, estimated_velocity_m_s, attitude, thrust_m_s2, time_us };
         let before_us = self.equation.latest_us().unwrap_or(time_us);
-        let Some(terms) = self.equation.observe(sampled) else { return false };
+        let Some(terms) = self.equation.observe(sampled, sample.averaging) else { return false };
         let latest_us = *self.latest_us.get_or_insert(time_us);
         let interval_us = time_us.saturating_sub(latest_us);
         let is_settled = self.settling_s == 0.0;
@@ -226,6 +229,7 @@ impl MassAndDrag {
         }
         self.latest_us = Some(time_us);
         let [interval_s, sampled_s] = [interval_us, time_us - before_us].map(|us| us as f64 / 1e6);
+        let averaging = sample.averaging.over(interval_s);
         self.settling_s = (self.settling_s - interval_s).max(0.0);
         if !terms.is_finite() {
             self.interrupt();
@@ -234,11 +238,11 @@ impl MassAndDrag {
         let noise_m_s2 = noise_m_s2(&configuration.sensors, terms.filled, sampled_s);
         // Also of what is not learned from: where the thrust was before it changed shows the mass as soon as it has changed.
         let (along_m_s2, drag_1_s) = (self.noise_along_m_s2(noise_m_s2), self.drag_1_s());
-        let shown = self.excitation.observe(&terms, interval_s, (along_m_s2, &drag_1_s));
+        let shown = self.excitation.observe(&terms, averaging.steady_motion, (along_m_s2, &drag_1_s));
         let moves = terms.velocity_m_s.norm() > AT_REST_M_S * terms.filled;
         let learns = moves && !is_saturated(configuration, sample);
         if learns {
-            self.learn(configuration, &terms, &shown, (noise_m_s2, interval_s));
+            self.learn(configuration, &terms, &shown, (noise_m_s2, interval_s, &averaging));
         }
         learns
     }
@@ -248,7 +252,7 @@ impl MassAndDrag {
         configuration: &Configuration,
         terms: &Terms,
         shown: &Shown,
-        (noise_m_s2, interval_s): (f64, f64),
+        (noise_m_s2, interval_s, averaging): (f64, f64, &Averaging),
     ) {
         let prior = &prior(configuration);
         let rows = [0, 1, 2].map(|axis| row(terms, axis));
@@ -259,7 +263,7 @@ impl MassAndDrag {
         let with_speed_m_s2 =
             DRAG_DEVIATIONS * DRAG_DEVIATION_1_S * self.excitation.change_of_speed_m_s(terms).norm();
         let swing_m_s2 = (change_m_s2.xy().norm() - with_speed_m_s2) / GUST_SWINGS;
-        let kept = libm::exp(-interval_s / GUSTY_S);
+        let kept = averaging.gusts_kept;
         self.watch_gusts(&rows, (unexplained_m_s2.xy().norm(), swing_m_s2), (noise_m_s2, kept));
         let surprise_m_s2 = SURPRISE_M_S2 + SURPRISE_DEVIATIONS * noise_m_s2 + GUST_SWINGS * self.gusts_m_s2;
         self.surprises *= kept;
@@ -290,7 +294,7 @@ impl MassAndDrag {
         }
         let along_m_s2 = self.noise_along_m_s2(noise_m_s2);
         let learned = learned_from(shown);
-        self.estimate.forget(prior, interval_s);
+        self.estimate.forget(prior, &averaging.learned_kept);
         // Filtered equations repeat one another for as long as the filter remembers.
         let repeated = (2.0 * MEMORY_S / interval_s).max(1.0);
         // And one across it passes for drag, as far as the speed changes with it.
@@ -299,7 +303,7 @@ impl MassAndDrag {
         for ((row, force_m_s2), deviation) in rows.iter().zip(&terms.specific_force_m_s2).zip(deviations) {
             self.estimate.update(prior, &learned, row, (*force_m_s2, deviation * deviation * repeated));
         }
-        let slow = -libm::expm1(-interval_s / STEADY_FORCE_S);
+        let slow = averaging.steady_force;
         let share = if self.settling_s > 0.0 { 1.0 } else { slow };
         self.steady_force_m_s2 += (self.force_m_s2() - self.steady_force_m_s2) * share;
         self.thrust.see(terms.present_thrust_m_s2(), slow);

@@ -1,5 +1,6 @@
 //! Mass and drag of the vehicle, learned in flight.
 
+pub(crate) mod averaging;
 pub(crate) mod bounded_estimate;
 pub(crate) mod coherence;
 pub(crate) mod excitation;

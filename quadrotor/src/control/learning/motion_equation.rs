@@ -4,11 +4,12 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::GRAVITY_M_S2;
+use crate::control::learning::averaging::SampledAveraging;
 use crate::finite::are_finite;
 
 /// Time constant of each stage of the filter, s: short beside the manoeuvres that show a mass, long beside the sample time
 /// of a sensor.
-const STAGE_S: f64 = 0.15;
+pub(super) const STAGE_S: f64 = 0.15;
 /// Number of stages. Differentiating positions twice takes two; the third one rolls their noise off.
 const STAGES: usize = 3;
 
@@ -150,7 +151,7 @@ impl MotionEquation {
     }
 
     /// Takes in an instant and returns the filtered equation of the interval that ends, if a whole one does.
-    pub(crate) fn observe(&mut self, now: Sampled) -> Option<Terms> {
+    pub(crate) fn observe(&mut self, now: Sampled, averaging: &SampledAveraging) -> Option<Terms> {
         let last = self.last.replace(now)?;
         let duration_s = now.time_us.checked_sub(last.time_us).filter(|us| *us > 0)? as f64 / 1e6;
         let thrust_m_s2 = (now.thrust_m_s2 + last.thrust_m_s2) / 2.0;
@@ -172,7 +173,7 @@ impl MotionEquation {
                 return None;
             }
         };
-        let share = -libm::expm1(-duration_s / STAGE_S);
+        let share = averaging.over(duration_s).stage;
         let mut input = raw;
         for stage in &mut self.stages {
             stage.approach(&input, share);
@@ -214,7 +215,12 @@ mod tests {
     use nalgebra::{UnitQuaternion, Vector3};
 
     use super::{MeasuredMotion, MotionEquation, Sampled, noise_of_positions};
-    use crate::GRAVITY_M_S2;
+    use crate::control::learning::averaging::SampledAveraging;
+    use crate::{Configuration, GRAVITY_M_S2};
+
+    fn averaging() -> SampledAveraging {
+        SampledAveraging::new(&Configuration::default().controllers.attitude)
+    }
 
     const MU: f64 = 1.3;
     const DRAG_1_S: f64 = 0.2;
@@ -254,7 +260,9 @@ mod tests {
             let (mut time_us, mut worst, mut count) = (0_u64, 0.0_f64, 0);
             for sample in 0..3_000_u64 {
                 time_us += if sample < 1_500 { 2_000 } else { 1_000 + 1_000 * (sample % 3) };
-                let Some(terms) = equation.observe(flight(time_us, by_position)) else { continue };
+                let Some(terms) = equation.observe(flight(time_us, by_position), &averaging()) else {
+                    continue;
+                };
                 let residual = terms.specific_force_m_s2
                     + Vector3::z() * (terms.thrust_m_s2 * MU)
                     + terms.velocity_m_s * Vector3::repeat(DRAG_1_S)
@@ -285,7 +293,8 @@ mod tests {
                 ((hash >> 11) as f64 / (1_u64 << 53) as f64 - 0.5) * (12.0_f64).sqrt() * 0.02
             };
             let position = Vector3::new(noise(0), noise(1), noise(2));
-            let terms = equation.observe(hover(MeasuredMotion::Position(position), 10_000 * sample));
+            let terms =
+                equation.observe(hover(MeasuredMotion::Position(position), 10_000 * sample), &averaging());
             sum += terms.map_or(0.0, |terms| terms.acceleration_m_s2.norm_squared() / 3.0);
         }
         let deviation = (sum / 20_000.0).sqrt();
@@ -297,14 +306,14 @@ mod tests {
     fn other_sensors_begin_anew() {
         let mut equation = MotionEquation::new();
         let zero = Vector3::zeros();
-        assert!(equation.observe(hover(MeasuredMotion::Velocity(zero), 0)).is_none());
-        assert!(equation.observe(hover(MeasuredMotion::Velocity(zero), 10_000)).is_some());
+        assert!(equation.observe(hover(MeasuredMotion::Velocity(zero), 0), &averaging()).is_none());
+        assert!(equation.observe(hover(MeasuredMotion::Velocity(zero), 10_000), &averaging()).is_some());
         for (sample, complete) in [false, true, true].into_iter().enumerate() {
             let time_us = 20_000 + 10_000 * sample as u64;
-            let terms = equation.observe(hover(MeasuredMotion::Position(zero), time_us));
+            let terms = equation.observe(hover(MeasuredMotion::Position(zero), time_us), &averaging());
             assert_eq!(terms.is_some(), complete, "{sample}");
         }
-        let again = equation.observe(hover(MeasuredMotion::Position(zero), 40_000));
+        let again = equation.observe(hover(MeasuredMotion::Position(zero), 40_000), &averaging());
         assert!(again.is_none(), "no time has passed");
     }
 }

@@ -3,7 +3,6 @@
 use lmpc::ModelIncrement;
 
 use crate::control::attitude_reference::SMOOTHING_S;
-use crate::control::estimator::lag_kept;
 use crate::design::attitude_design::AXIS_STATES;
 use crate::design::estimator_design::Axis;
 use crate::design::stability::linear_law::{ChannelSample, LinearLaw};
@@ -102,7 +101,7 @@ impl TurningAxis {
             is_incremental: design.attitude.is_incremental(),
             believed: configuration.controllers.mass_factor,
             sample_time_s,
-            kept: lag_kept(configuration, sample_time_s),
+            kept: design.thrust_lag.kept(),
             output_feedback: configuration.sensors.output_feedback,
             estimator: design.estimator.rotation,
         }

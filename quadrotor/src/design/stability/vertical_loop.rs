@@ -6,7 +6,7 @@ use lmpc::DesignError;
 use nalgebra::SVector;
 
 use crate::Configuration;
-use crate::control::estimator::lag_kept;
+use crate::control::thrust_lag::ThrustLag;
 use crate::design::stability::loop_events::{LoopEvent, loop_events, period_s};
 use crate::design::stability::motion::{Motions, vertical};
 use crate::design::stability::moving_axis::{Moving, MovingAxis};
@@ -44,7 +44,7 @@ impl VerticalLoop {
             events,
             motions,
             believed: controllers.mass_factor,
-            kept: lag_kept(configuration, controllers.attitude.sample_time_s()),
+            kept: ThrustLag::of(configuration).kept(),
         })
     }
 }

@@ -1,13 +1,21 @@
 //! Mass and drag from flights that are made up.
 
+extern crate std;
+
 use alloc::vec::Vec;
+use std::sync::LazyLock;
 
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
 use super::{FlightSample, MassAndDrag};
+use crate::control::learning::averaging::SampledAveraging;
 use crate::control::learning::motion_equation::MeasuredMotion;
 use crate::{Configuration, GRAVITY_M_S2};
+
+/// Of samples each 10 ms.
+static AVERAGING: LazyLock<SampledAveraging> =
+    LazyLock::new(|| SampledAveraging::new(&Configuration::default().controllers.attitude));
 
 /// One instant of a flight, as it would be recorded.
 #[derive(Clone, Copy)]
@@ -28,6 +36,7 @@ impl Recorded {
             rotor_speed_rad_s: &self.rotor_speed_rad_s,
             rotor_command_rad_s: &self.rotor_speed_rad_s,
             time_us: self.time_us,
+            averaging: &AVERAGING,
         }
     }
 }
@@ -243,6 +252,7 @@ proptest! {
                 rotor_speed_rad_s: &rotors,
                 rotor_command_rad_s: &rotors,
                 time_us,
+                averaging: &AVERAGING,
             });
             prop_assert!((0.4 - 1e-12..=2.5 + 1e-12).contains(&learner.mass_factor()));
             let drag_1_s = learner.drag_n_s_m(&configuration) / learner.mass_kg(&configuration);
