@@ -42,6 +42,11 @@ pub(crate) struct WayPlan {
     past: Option<PastMotion>,
 }
 
+/// Position and derivatives along an axis. Pairs of them lie as vectors do, so that what is stored together is loaded together: else a
+/// load has to wait.
+#[repr(align(16))]
+struct Parts([f64; 5]);
+
 /// What a plan does that lower limits may make worse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Excursion {
@@ -218,7 +223,7 @@ impl WayPlan {
 
     /// Position and derivatives of the axes as vectors.
     fn in_world_of(&self, parts: impl Fn(&MotionProfile) -> [f64; 5]) -> [Vector3<f64>; 5] {
-        let [along, across, down] = self.axes.each_ref().map(parts);
+        let [Parts(along), Parts(across), Parts(down)] = self.axes.each_ref().map(|axis| Parts(parts(axis)));
         core::array::from_fn(|part| {
             let horizontal = self.turn * Vector2::new(along[part], across[part]);
             Vector3::new(horizontal.x, horizontal.y, down[part])

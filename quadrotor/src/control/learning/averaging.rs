@@ -61,10 +61,12 @@ impl SampledAveraging {
         Self { sample, learning }
     }
 
-    /// Over an interval, s.
-    pub(crate) fn over(&self, interval_s: f64) -> Averaging {
-        let known = [self.sample, self.learning].into_iter().find(|known| known.interval_s == interval_s);
-        known.unwrap_or_else(|| Averaging::over(interval_s))
+    /// Over an interval, s; found in the room when it is none of those.
+    pub(crate) fn over<'a>(&'a self, interval_s: f64, room: &'a mut Option<Averaging>) -> &'a Averaging {
+        match [&self.sample, &self.learning].into_iter().find(|known| known.interval_s == interval_s) {
+            Some(known) => known,
+            None => room.insert(Averaging::over(interval_s)),
+        }
     }
 }
 
@@ -84,7 +86,8 @@ mod tests {
             let sampled = SampledAveraging::new(&attitude);
             for interval_s in [sample_us as f64 / 1e6, 0.02, 0.03, other_s] {
                 let whole = Averaging::over(interval_s);
-                prop_assert_eq!(sampled.over(interval_s), whole);
+                let mut room = None;
+                prop_assert_eq!(sampled.over(interval_s, &mut room), &whole);
                 let half = Averaging::over(interval_s / 2.0);
                 let twice = |share: f64| 1.0 - (1.0 - share) * (1.0 - share);
                 prop_assert!((twice(half.stage) - whole.stage).abs() < 1e-12);

@@ -229,7 +229,8 @@ impl MassAndDrag {
         }
         self.latest_us = Some(time_us);
         let [interval_s, sampled_s] = [interval_us, time_us - before_us].map(|us| us as f64 / 1e6);
-        let averaging = sample.averaging.over(interval_s);
+        let mut room = None;
+        let averaging = sample.averaging.over(interval_s, &mut room);
         self.settling_s = (self.settling_s - interval_s).max(0.0);
         if !terms.is_finite() {
             self.interrupt();
@@ -242,7 +243,7 @@ impl MassAndDrag {
         let moves = terms.velocity_m_s.norm() > AT_REST_M_S * terms.filled;
         let learns = moves && !is_saturated(configuration, sample);
         if learns {
-            self.learn(configuration, &terms, &shown, (noise_m_s2, interval_s, &averaging));
+            self.learn(configuration, &terms, &shown, (noise_m_s2, interval_s, averaging));
         }
         learns
     }

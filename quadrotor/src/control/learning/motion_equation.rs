@@ -173,7 +173,7 @@ impl MotionEquation {
                 return None;
             }
         };
-        let share = averaging.over(duration_s).stage;
+        let share = averaging.over(duration_s, &mut None).stage;
         let mut input = raw;
         for stage in &mut self.stages {
             stage.approach(&input, share);
