@@ -28,7 +28,8 @@ pub struct AltitudeController {
 }
 
 impl AltitudeController {
-    /// Takes over a vehicle at height z, m, as if it had been at rest there: its whole velocity is damped from the first sample on.
+    /// Takes over a vehicle at height z, m. Its whole velocity is damped from the first sample on: a law that goes by increments takes it
+    /// to have been at rest there, one that goes by a model to have been damped so far.
     pub fn new(z_m: f64) -> Self {
         let start =
             ControllerState::new(Vector3::new(z_m, 0.0, 0.0), Vector1::zeros(), Vector1::zeros()).keeping();
@@ -52,7 +53,9 @@ impl AltitudeController {
         let lag_s = configuration.airframe.mean_rotor_lag_s();
         let deviation =
             Vector3::new(error.x, seen.velocity_m_s - rate_m_s, seen.acceleration_m_s2 - reference.thrust.x);
-        self.take_over(design, &deviation, reference, range);
+        // The rotors answer late: z̈ = G − T z⃛.
+        let input_reference = reference.thrust + reference.thrust_jerk * lag_s;
+        self.take_over(design, &deviation, &input_reference, range);
         let motion = MotionSample {
             deviation,
             change: measured - self.controller.measured() - Vector3::new(position, velocity, acceleration),
@@ -67,8 +70,7 @@ impl AltitudeController {
             // What disturbs the vehicle accelerates it, too.
             deviation: deviation + Vector3::z() * seen.disturbance_m_s2,
             error,
-            // The rotors answer late: z̈ = G − T z⃛.
-            input_reference: reference.thrust + reference.thrust_jerk * lag_s,
+            input_reference,
             disturbance: Vector1::new(seen.disturbance_m_s2),
             upper: &altitude_bounds(&configuration.limits, range, rate_m_s),
             ..Sample::default()
@@ -86,14 +88,14 @@ impl AltitudeController {
         &mut self,
         design: &CascadeDesign,
         deviation: &Vector3<f64>,
-        reference: &ReferenceMotion<1>,
+        input_reference: &Vector1<f64>,
         (least, most): (f64, f64),
     ) {
         let Some(model) = design.altitude.motion.as_ref().filter(|_| self.observed.begins()) else { return };
         let moving = Vector3::new(0.0, deviation.y, deviation.z);
         let feedback = model.feedback_before(|increment| design.altitude.law.answer_to(increment), &moving);
-        let applied = Vector1::new((reference.thrust.x + feedback.x).clamp(least, most));
-        self.controller.turn_feedback(|_| applied - reference.thrust);
+        let applied = Vector1::new((input_reference.x + feedback.x).clamp(least, most));
+        self.controller.turn_feedback(|_| applied - input_reference);
     }
 
     /// The part of the last command that the reference requires, m/s² down.

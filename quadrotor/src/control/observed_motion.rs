@@ -70,8 +70,8 @@ impl<const N: usize, const P: usize> MotionModel<N, P> {
         }
     }
 
-    /// The feedback v(k−1) of a law −K Δx, told by what it answers to an increment, that has been on since the vehicle rested, without
-    /// disturbances, and has it in this deviation now:
+    /// The feedback v(k−1) that a law −K Δx would have applied last, had it brought the vehicle from rest to this deviation without
+    /// disturbances. `answer` gives −K Δx.
     ///
     /// ```text
     /// v = −K A⁻¹ (x − B v)
@@ -173,15 +173,15 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
     }
 
     /// Goes on under another belief in what moves the vehicle: the last state counts as having so much more of some derivatives, and
-    /// what an acceleration explains more, d explains less. The motion itself is what it was.
+    /// what an acceleration explains more, d explains less. The motion itself is what it was. Before the first sample nothing is known
+    /// of it.
     pub(crate) fn believe(&mut self, more: &SVector<f64, N>) {
-        let believed = self.deviation.map(|deviation| deviation + more);
+        let Some(deviation) = self.deviation else { return };
+        let believed = deviation + more;
         let less: SVector<f64, P> = SVector::from_fn(|channel, _| more[N / P * channel + 2]);
         let (disturbance, lasting) = (self.disturbance - less, self.lasting - less);
-        if believed.is_none_or(|believed| are_finite(believed.as_slice()))
-            && are_finite(disturbance.as_slice())
-        {
-            *self = Self { deviation: believed, disturbance, lasting };
+        if are_finite(believed.as_slice()) && are_finite(disturbance.as_slice()) {
+            *self = Self { deviation: Some(believed), disturbance, lasting };
         }
     }
 
@@ -191,7 +191,7 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
         model.inverse * model.by_disturbance * (self.disturbance - self.lasting)
     }
 
-    /// The increment Δx(k) of the motion that leads to the deviation:
+    /// The increment Δx(k) of the motion that leads to the deviation. At the first sample, d stays as it is:
     ///
     /// ```text
     /// ν    = Δẏ − [(A − I) x(k−1) + B v + E d]_ẏ        what the model has missed
@@ -269,6 +269,8 @@ mod tests {
         };
         let times = (SAMPLE_TIME_S, 0.0);
         assert!(observed.begins());
+        // Another mass says nothing of a motion that nobody has seen.
+        observed.believe(&Vector3::new(0.0, 0.0, 1.0));
         let start = Vector3::new(0.0, 0.7, 0.0);
         let increment = observed.step(Some(&model), &seen(start, Vector3::zeros()), times);
         assert!(!observed.begins() && observed.disturbance() == Vector1::zeros());

@@ -50,7 +50,8 @@ pub struct PositionController {
 }
 
 impl PositionController {
-    /// Takes over a vehicle at x, y, m, as if it had been at rest there: its whole velocity is damped from the first sample on.
+    /// Takes over a vehicle at x, y, m. Its whole velocity is damped from the first sample on: a law that goes by increments takes it to
+    /// have been at rest there, one that goes by a model to have been damped so far.
     pub fn new(position_m: Vector2<f64>) -> Self {
         let zero = Vector2::zeros();
         let measured = by_axis([position_m, zero, zero, zero, zero, zero]);
@@ -122,7 +123,6 @@ impl PositionController {
             delay_s: BrakingWay::delay_s(&configuration.limits),
         });
         let lean = (present_m_s2, lasting_m_s2(reference, &lasting, &asked));
-
         let bounds = position_bounds(&configuration.limits, lean, &asked, under_way);
         let sample = Sample {
             measured: turn.state(&measured),

@@ -67,7 +67,7 @@ fn beyond_m(preset: AirframePreset, kind: ControllerKind) -> f64 {
 }
 
 /// A start in motion was taken for a force that had pushed the vehicle within a sample, and would last: it was answered by 13 N of thrust
-/// at a weight of 7, and the climb went on for 13 cm beyond its goal.
+/// at a weight of 7, and the climb went on for 14 cm beyond its goal.
 #[test]
 fn a_start_in_motion_is_no_force() {
     for preset in AirframePreset::ALL {

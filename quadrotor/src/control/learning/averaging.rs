@@ -1,4 +1,4 @@
-//! How much of what the learner averages goes within an interval.
+//! How much the learner's averages take in and keep over an interval.
 
 use nalgebra::SVector;
 
@@ -61,7 +61,7 @@ impl SampledAveraging {
         Self { sample, learning }
     }
 
-    /// Over an interval, s; found in the room when it is none of those.
+    /// Over an interval, s; computed into `room` if it is neither of these.
     pub(crate) fn over<'a>(&'a self, interval_s: f64, room: &'a mut Option<Averaging>) -> &'a Averaging {
         match [&self.sample, &self.learning].into_iter().find(|known| known.interval_s == interval_s) {
             Some(known) => known,
@@ -88,6 +88,8 @@ mod tests {
                 let whole = Averaging::over(interval_s);
                 let mut room = None;
                 prop_assert_eq!(sampled.over(interval_s, &mut room), &whole);
+                let known = [sampled.sample.interval_s, sampled.learning.interval_s];
+                prop_assert_eq!(room.is_none(), known.contains(&interval_s));
                 let half = Averaging::over(interval_s / 2.0);
                 let twice = |share: f64| 1.0 - (1.0 - share) * (1.0 - share);
                 prop_assert!((twice(half.stage) - whole.stage).abs() < 1e-12);

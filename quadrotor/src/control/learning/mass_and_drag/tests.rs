@@ -13,7 +13,7 @@ use crate::control::learning::averaging::SampledAveraging;
 use crate::control::learning::motion_equation::MeasuredMotion;
 use crate::{Configuration, GRAVITY_M_S2};
 
-/// Of samples each 10 ms.
+/// Of samples every 10 ms.
 static AVERAGING: LazyLock<SampledAveraging> =
     LazyLock::new(|| SampledAveraging::new(&Configuration::default().controllers.attitude));
 
