@@ -92,7 +92,8 @@ impl AltitudeController {
         (least, most): (f64, f64),
     ) {
         let Some(model) = design.altitude.motion.as_ref().filter(|_| self.observed.begins()) else { return };
-        let moving = Vector3::new(0.0, deviation.y, deviation.z);
+        // The acceleration follows from a mass that is only believed in.
+        let moving = Vector3::new(0.0, deviation.y, 0.0);
         let feedback = model.feedback_before(|increment| design.altitude.law.answer_to(increment), &moving);
         let applied = Vector1::new((input_reference.x + feedback.x).clamp(least, most));
         self.controller.turn_feedback(|_| applied - input_reference);

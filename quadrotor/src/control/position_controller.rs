@@ -153,7 +153,11 @@ impl PositionController {
         present_m_s2: f64,
     ) {
         let Some(model) = design.position.motion.as_ref().filter(|_| self.observed.begins()) else { return };
-        let moving = with_position(deviation, &Vector2::zeros());
+        let (zero, velocity) = (Vector2::zeros(), Vector2::new(deviation[1], deviation[AXIS_STATES + 1]));
+        if velocity == zero {
+            return;
+        }
+        let moving = by_axis([zero, velocity, zero, zero, zero, zero]);
         let feedback = model.feedback_before(|increment| design.position.law.answer_to(increment), &moving);
         let applied = (reference.thrust + feedback).cap_magnitude(present_m_s2);
         self.controller.turn_feedback(|_| applied - reference.thrust);
