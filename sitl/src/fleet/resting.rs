@@ -4,10 +4,8 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use clap::Parser;
-use mavlink::MessageData;
 use mavlink::dialects::ardupilotmega::{
     HEARTBEAT_DATA, MavCmd, MavMessage, MavParamType, MavType, PARAM_REQUEST_LIST_DATA, PARAM_SET_DATA,
-    STATUSTEXT_DATA,
 };
 use vehicle::parameters::Speed;
 use vehicle::{Mode, TICK_US};
@@ -162,12 +160,6 @@ fn frames(log: &[u8]) -> Vec<(u64, Vec<u8>)> {
     frames
 }
 
-/// Whether a frame of MAVLink 2 is a heartbeat, which is also sent when the mode changes, or a text.
-fn tells_of_decisions(frame: &[u8]) -> bool {
-    let [low, middle, high] = [7, 8, 9].map(|at| u32::from(frame[at]));
-    [HEARTBEAT_DATA::ID, STATUSTEXT_DATA::ID].contains(&(low | middle << 8 | high << 16))
-}
-
 #[test]
 fn what_comes_in_the_middle_of_a_long_tick_is_handled_at_its_time() {
     let flown = |course| {
@@ -180,12 +172,10 @@ fn what_comes_in_the_middle_of_a_long_tick_is_handled_at_its_time() {
         let (same_record, same_traffic) = flown(Course::Clock(period));
         assert!(same_record == record, "another flight, looked at each {period} ms");
         assert_eq!(same_traffic.len(), traffic.len());
-        // Regular messages come when they are due. What the vehicle decides by itself, such as that it has taken off, is told with the
-        // next of them or at the end of a long tick.
+        // Regular messages come when they are due, what else is told with the next of them or at the end of a long tick.
         for ((at_us, frame), (then_us, same)) in traffic.iter().zip(&same_traffic) {
-            let late_us = if tells_of_decisions(frame) { MOST_BEHIND * TICK_US } else { 5_000 };
             assert!(
-                same == frame && then_us.abs_diff(*at_us) < late_us,
+                same == frame && then_us.abs_diff(*at_us) < 5_000,
                 "{frame:?} at {at_us}, {same:?} at {then_us} µs"
             );
         }
