@@ -78,7 +78,8 @@ impl<const N: usize, const P: usize, const W: usize, T: Precision, const K: usiz
         }
     }
 
-    /// Replaces v(k−1), for a plant whose input axes have turned since, or for a law that takes over in flight. A value that is not finite is ignored.
+    /// Replaces v(k−1), for a plant whose input axes have turned since, or for a law that takes over in flight. A value that is not
+    /// finite is ignored.
     pub fn turn_feedback(&mut self, turned: impl Fn(&SVector<T, P>) -> SVector<T, P>) {
         let feedback = turned(&self.feedback);
         if finite(&feedback) {

@@ -55,7 +55,7 @@ impl AltitudeController {
             Vector3::new(error.x, seen.velocity_m_s - rate_m_s, seen.acceleration_m_s2 - reference.thrust.x);
         // The rotors answer late: z̈ = G − T z⃛.
         let input_reference = reference.thrust + reference.thrust_jerk * lag_s;
-        self.take_over(design, &deviation, &input_reference, range);
+        self.take_over(design, deviation.y, &input_reference, range);
         let motion = MotionSample {
             deviation,
             change: measured - self.controller.measured() - Vector3::new(position, velocity, acceleration),
@@ -83,18 +83,19 @@ impl AltitudeController {
         (applied.x, ControllerActivity::of(&step, &wanted, &applied))
     }
 
-    /// Before the first sample of a vehicle in motion: the feedback by which a law that foresees limits would have damped it so far.
+    /// Before the first sample of a vehicle that deviates at a velocity, m/s: see [`ObservedMotion::first_feedback`].
     fn take_over(
         &mut self,
         design: &CascadeDesign,
-        deviation: &Vector3<f64>,
+        velocity_m_s: f64,
         input_reference: &Vector1<f64>,
         (least, most): (f64, f64),
     ) {
-        let Some(model) = design.altitude.motion.as_ref().filter(|_| self.observed.begins()) else { return };
-        // The acceleration follows from a mass that is only believed in.
-        let moving = Vector3::new(0.0, deviation.y, 0.0);
-        let feedback = model.feedback_before(|increment| design.altitude.law.answer_to(increment), &moving);
+        let (law, model) = (&design.altitude.law, design.altitude.motion.as_ref());
+        let answer = |increment: &_| law.answer_to(increment);
+        let Some(feedback) = self.observed.first_feedback(model, answer, &Vector1::new(velocity_m_s)) else {
+            return;
+        };
         let applied = Vector1::new((input_reference.x + feedback.x).clamp(least, most));
         self.controller.turn_feedback(|_| applied - input_reference);
     }

@@ -76,7 +76,7 @@ impl<const N: usize, const P: usize> MotionModel<N, P> {
     /// ```text
     /// v = −K A⁻¹ (x − B v)
     /// ```
-    pub(crate) fn feedback_before(
+    fn feedback_before(
         &self,
         answer: impl Fn(&SVector<f64, N>) -> SVector<f64, P>,
         deviation: &SVector<f64, N>,
@@ -125,9 +125,21 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
         Self { deviation: Some(deviation), disturbance, lasting: disturbance }
     }
 
-    /// Whether no sample has been seen yet.
-    pub(crate) fn begins(&self) -> bool {
-        self.deviation.is_none()
+    /// What a law that goes by a model begins with where it takes over a vehicle whose outputs deviate at a rate: the feedback by which it
+    /// would have damped that so far. `None` without a model, and once a sample has been seen. Accelerations do not count: they follow from
+    /// a mass that is only believed in.
+    pub(crate) fn first_feedback(
+        &self,
+        model: Option<&MotionModel<N, P>>,
+        answer: impl Fn(&SVector<f64, N>) -> SVector<f64, P>,
+        rate: &SVector<f64, P>,
+    ) -> Option<SVector<f64, P>> {
+        let model = model.filter(|_| self.deviation.is_none())?;
+        let mut moving = SVector::zeros();
+        for channel in 0..P {
+            moving[N / P * channel + 1] = rate[channel];
+        }
+        Some(model.feedback_before(answer, &moving))
     }
 
     /// d.
@@ -268,12 +280,15 @@ mod tests {
             jump: Vector3::zeros(),
         };
         let times = (SAMPLE_TIME_S, 0.0);
-        assert!(observed.begins());
+        let begins = |observed: &ObservedMotion<3, 1>| {
+            observed.first_feedback(Some(&model), |_| Vector1::zeros(), &Vector1::zeros()).is_some()
+        };
+        assert!(begins(&observed));
         // Another mass says nothing of a motion that nobody has seen.
         observed.believe(&Vector3::new(0.0, 0.0, 1.0));
         let start = Vector3::new(0.0, 0.7, 0.0);
         let increment = observed.step(Some(&model), &seen(start, Vector3::zeros()), times);
-        assert!(!observed.begins() && observed.disturbance() == Vector1::zeros());
+        assert!(!begins(&observed) && observed.disturbance() == Vector1::zeros());
         assert!((increment - Vector3::new(0.7 * SAMPLE_TIME_S, 0.0, 0.0)).norm() < 1e-12, "{increment}");
         // 2 m/s² for a sample.
         let pushed =

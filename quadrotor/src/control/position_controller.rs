@@ -98,7 +98,7 @@ impl PositionController {
         let mut room = [0.0; POSITION_SIGNALS];
         let (moved, asked) = foreseen(law, &turn, reference, (ahead, asked), &mut room);
         let deviation = with_position(&(measured - state_of(reference)), &error);
-        self.take_over(design, &deviation, reference, present_m_s2);
+        self.take_over(design, &(seen.velocity_m_s - reference.velocity), reference, present_m_s2);
         let [jerk_jump, snap_jump] = reference.jumps_since(&self.reference);
         let [seen_jerk_jump, seen_snap_jump] =
             if reference.is_bent { [jerk_jump * BENT, zero] } else { [jerk_jump, snap_jump] };
@@ -144,21 +144,21 @@ impl PositionController {
         (applied, ControllerActivity::of(&step, &step.input, &applied))
     }
 
-    /// Before the first sample of a vehicle in motion: the feedback by which a law that foresees limits would have damped it so far.
+    /// Before the first sample of a vehicle that deviates at a velocity, m/s: see [`ObservedMotion::first_feedback`].
     fn take_over(
         &mut self,
         design: &CascadeDesign,
-        deviation: &SVector<f64, POSITION_STATES>,
+        velocity_m_s: &Vector2<f64>,
         reference: &ReferenceMotion<2>,
         present_m_s2: f64,
     ) {
-        let Some(model) = design.position.motion.as_ref().filter(|_| self.observed.begins()) else { return };
-        let (zero, velocity) = (Vector2::zeros(), Vector2::new(deviation[1], deviation[AXIS_STATES + 1]));
-        if velocity == zero {
+        // Nothing is damped, and nothing of no length need be cut off, which would divide by it.
+        if *velocity_m_s == Vector2::zeros() {
             return;
         }
-        let moving = by_axis([zero, velocity, zero, zero, zero, zero]);
-        let feedback = model.feedback_before(|increment| design.position.law.answer_to(increment), &moving);
+        let (law, model) = (&design.position.law, design.position.motion.as_ref());
+        let answer = |increment: &_| law.answer_to(increment);
+        let Some(feedback) = self.observed.first_feedback(model, answer, velocity_m_s) else { return };
         let applied = (reference.thrust + feedback).cap_magnitude(present_m_s2);
         self.controller.turn_feedback(|_| applied - reference.thrust);
     }

@@ -63,8 +63,8 @@ impl<const AXES: usize> ReferenceMotion<AXES> {
     /// Hermite's rule, exact for a jerk that changes evenly:
     /// Δp = T (v + v⁻)/2 − T² (a − a⁻)/12,  Δv = T (a + a⁻)/2 − T² (j − j⁻)/12
     ///
-    /// At the first sample a controller that goes by increments takes the vehicle for one that was at rest there. The reference was so, too, and its whole
-    /// velocity is an increment: a vehicle that moves with it has nothing to explain.
+    /// At the first sample a controller that goes by increments takes the vehicle for one that was at rest there. The reference was so,
+    /// too, and its whole velocity is an increment: a vehicle that moves with it has nothing to explain.
     pub fn increments_since(&self, previous: &Self) -> [[f64; 5]; AXES] {
         let t = self.interval_s;
         core::array::from_fn(|axis| {

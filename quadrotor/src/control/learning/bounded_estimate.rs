@@ -55,8 +55,8 @@ impl<const N: usize> BoundedEstimate<N> {
         }
     }
 
-    /// Forgets for a time t: P ← D P D + (1 − D²) P₀ with D = e^(−t/T), what is kept of each number. A covariance stays one. Forgetting ends
-    /// at the prior's deviation, so that without excitation nothing winds up.
+    /// Forgets for a time t: P ← D P D + (1 − D²) P₀ with D = e^(−t/T), what is kept of each number. A covariance stays one. Forgetting
+    /// ends at the prior's deviation, so that without excitation nothing winds up.
     pub(crate) fn forget(&mut self, prior: &Prior<N>, kept: &SVector<f64, N>) {
         for (i, column) in self.covariance.as_mut_slice().chunks_exact_mut(N).enumerate() {
             for (number, other) in column.iter_mut().zip(kept.as_slice()) {

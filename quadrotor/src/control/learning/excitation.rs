@@ -74,7 +74,8 @@ impl Excitation {
 
     /// What the equation of an interval shows under noise of this deviation, m/s², if the vehicle has this drag per mass, 1/s.
     ///
-    /// What is steady takes in this `share` of it. Of a filter that is hardly filled, noise is a large share. What is steady begins anew when it is known twice as well.
+    /// What is steady takes in this `share` of it, and begins anew when it is known twice as well. Of a filter that is hardly filled, noise
+    /// is a large share.
     pub(crate) fn observe(
         &mut self,
         terms: &Terms,

@@ -47,6 +47,19 @@ fn mass_range(configuration: &Configuration) -> [f64; 2] {
     [lightest, heaviest.min(lifted).max(1.0).max(believed)]
 }
 
+/// How well what a configuration believes in is known.
+pub(super) fn prior(configuration: &Configuration) -> Prior<UNKNOWNS> {
+    let [lightest, heaviest] = mass_range(configuration);
+    let mut most = each(1.0 / lightest, MOST_DRAG_1_S, MOST_FORCE_M_S2);
+    for (axis, drag_1_s) in configuration.drag_1_s().iter().enumerate() {
+        most[1 + axis] = most[1 + axis].max(2.0 * drag_1_s);
+    }
+    Prior {
+        deviation: each(MASS_DEVIATION, DRAG_DEVIATION_1_S, FORCE_DEVIATION_M_S2),
+        range: [each(1.0 / heaviest, 0.0, -MOST_FORCE_M_S2), most],
+    }
+}
+
 /// Time in which what was learned of each fades, s: the variance grows by 2σ²/T per second.
 pub(super) fn memory_s() -> Unknowns {
     let memory_s = |deviation: f64, wandering: f64| 2.0 * deviation * deviation / (wandering * wandering);
@@ -63,17 +76,4 @@ fn each(mass: f64, drag: f64, force: f64) -> Unknowns {
         1..4 => drag,
         _ => force,
     })
-}
-
-/// The same, and how well it is known.
-pub(super) fn prior(configuration: &Configuration) -> Prior<UNKNOWNS> {
-    let [lightest, heaviest] = mass_range(configuration);
-    let mut most = each(1.0 / lightest, MOST_DRAG_1_S, MOST_FORCE_M_S2);
-    for (axis, drag_1_s) in configuration.drag_1_s().iter().enumerate() {
-        most[1 + axis] = most[1 + axis].max(2.0 * drag_1_s);
-    }
-    Prior {
-        deviation: each(MASS_DEVIATION, DRAG_DEVIATION_1_S, FORCE_DEVIATION_M_S2),
-        range: [each(1.0 / heaviest, 0.0, -MOST_FORCE_M_S2), most],
-    }
 }
