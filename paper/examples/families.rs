@@ -16,8 +16,8 @@ use chacha20::rand_core::{Rng, SeedableRng};
 use clap::Parser;
 use nalgebra::Vector3;
 use paper::NOISE;
-use paper::bars::{Demand, Flyer, Moment, Path, Plan, Points, Row, Shape, Track, fly, largest, rms};
-use quadrotor::{AirframePreset, Configuration, Sensors};
+use paper::bars::{Demand, Flyer, Moment, Path, Plan, Points, Pushes, Row, Shape, Track, fly, largest, rms};
+use quadrotor::{Airframe, AirframePreset, Configuration, RotorSpin, Sensors};
 use rayon::prelude::*;
 
 /// Flies random flights by family.
@@ -85,7 +85,7 @@ struct Family {
     change: fn(&mut Draw, &mut Plan),
 }
 
-const FAMILIES: [Family; 17] = [
+const FAMILIES: [Family; 23] = [
     Family { name: "goal", change: goal },
     Family { name: "wind", change: wind },
     Family { name: "low-tilt", change: low_tilt },
@@ -103,6 +103,12 @@ const FAMILIES: [Family; 17] = [
     Family { name: "noisy-path", change: noisy_path },
     Family { name: "noisy-goal", change: noisy_goal },
     Family { name: "wrong-mass", change: wrong_mass },
+    Family { name: "gusts", change: gusts },
+    Family { name: "torque", change: torque },
+    Family { name: "noisy-torque", change: noisy_torque },
+    Family { name: "physics", change: physics },
+    Family { name: "machine-goal", change: |draw, plan| machine(draw, plan, goal) },
+    Family { name: "machine-path", change: |draw, plan| machine(draw, plan, slow_path) },
 ];
 
 const LEVEL: [Shape; 2] = [Shape::FigureEight, Shape::Circle];
@@ -224,6 +230,80 @@ fn wrong_mass(draw: &mut Draw, plan: &mut Plan) {
     plan.configuration.controllers.mass_factor = draw.scaled(0.6, 1.4);
 }
 
+fn slow_path(draw: &mut Draw, plan: &mut Plan) {
+    path(draw, plan, (0.5, 6.0), (0.3, 1.0), &ALL);
+}
+
+/// Forces that swing in their own time, up to 0.6 of the weight in all along each axis.
+fn gusts(draw: &mut Draw, plan: &mut Plan) {
+    slow_path(draw, plan);
+    plan.pushes.gust_n = draw.scaled(0.008, 0.12) * plan.configuration.airframe.weight_n();
+}
+
+/// A torque that comes and goes, of up to 0.12 of the weight on the end of an arm.
+fn torque(draw: &mut Draw, plan: &mut Plan) {
+    slow_path(draw, plan);
+    let airframe = &plan.configuration.airframe;
+    let most_n_m = draw.scaled(0.01, 0.12) * airframe.weight_n() * airframe.arm_length_m;
+    let heading = draw.between(0.0, TAU);
+    let yaw_n_m = 0.1 * most_n_m * draw.between(-1.0, 1.0);
+    plan.pushes.torque_n_m = [most_n_m * heading.cos(), most_n_m * heading.sin(), yaw_n_m];
+}
+
+fn noisy_torque(draw: &mut Draw, plan: &mut Plan) {
+    torque(draw, plan);
+    noisy(draw, plan);
+}
+
+/// Physics that the controllers do not know.
+fn physics(draw: &mut Draw, plan: &mut Plan) {
+    slow_path(draw, plan);
+    let airframe = &mut plan.configuration.airframe;
+    let (mass_kg, hover_rad_s) = (airframe.mass_kg, airframe.hover_rotor_speed_rad_s());
+    let aerodynamics = &mut airframe.rotor_aerodynamics;
+    aerodynamics.drag_coefficient_n_s2_m = draw.between(0.0, 0.05) * mass_kg / hover_rad_s;
+    aerodynamics.inflow_coefficient_n_s2_m = draw.between(0.0, 0.1) * mass_kg / hover_rad_s;
+    aerodynamics.translational_lift_coefficient_n_s2_m2 = draw.between(0.0, 0.005) * mass_kg;
+    airframe.body_drag_n_s_m = [0.03, 0.05, 0.1].map(|drag_1_s| drag_1_s * mass_kg);
+    airframe.rotor_spin.fall_time_ratio = draw.between(1.0, 2.0);
+    airframe.rotor_spin.inertia_kg_m2 =
+        draw.between(0.0, 0.01) * airframe.torque_coefficient_n_m_s2 * hover_rad_s;
+}
+
+/// Something else on another machine: of half to twice the size, with moments of inertia, rotors and drag of its own, and out of balance.
+fn machine(draw: &mut Draw, plan: &mut Plan, fly: fn(&mut Draw, &mut Plan)) {
+    let preset = plan.configuration.airframe;
+    let configuration = loop {
+        if let Ok(configuration) = Configuration::for_airframe(&of_another_size(draw, &preset)) {
+            break configuration;
+        }
+    };
+    plan.configuration = configuration;
+    plan.configuration.reference.shaping = false;
+    fly(draw, plan);
+}
+
+fn of_another_size(draw: &mut Draw, preset: &Airframe) -> Airframe {
+    let size = draw.scaled(0.5, 2.0);
+    let heavier = size.powi(3) * draw.scaled(0.7, 1.4);
+    let (arm_length_m, mass_kg) = (preset.arm_length_m * size, preset.mass_kg * heavier);
+    let spread = draw.scaled(0.6, 1.6);
+    let inertia_kg_m2 = preset.inertia_kg_m2.map(|inertia| inertia * heavier * size * size * spread);
+    Airframe {
+        mass_kg,
+        arm_length_m,
+        inertia_kg_m2,
+        products_of_inertia_kg_m2: [(); 3].map(|()| draw.between(-0.02, 0.02) * inertia_kg_m2[0]),
+        centre_of_gravity_m: [(); 3].map(|()| draw.between(-0.02, 0.02) * arm_length_m),
+        thrust_coefficient_n_s2: preset.thrust_coefficient_n_s2 * heavier * draw.scaled(0.7, 1.6),
+        torque_coefficient_n_m_s2: preset.torque_coefficient_n_m_s2 * heavier * size * draw.scaled(0.7, 1.6),
+        rotor_time_constant_s: preset.rotor_time_constant_s * draw.scaled(0.5, 1.8),
+        rotor_spin: RotorSpin { fall_time_ratio: draw.between(1.0, 2.0), ..preset.rotor_spin },
+        drag_n_s_m: [(); 3].map(|()| draw.between(0.0, 0.05) * mass_kg),
+        ..*preset
+    }
+}
+
 /// Numbers of a flight, the smaller the better.
 const FIGURES: [&str; 7] =
     ["off, m", "beyond, m", "aside, m", "settled, s", "tilt, °", "speed, share", "vertical, share"];
@@ -288,6 +368,7 @@ fn plan(family: &Family, seed: u64) -> Result<Plan, Box<dyn Error + Send + Sync>
         configuration,
         demand: Demand::Goal([0.0; 3]),
         force_n: [0.0; 3],
+        pushes: Pushes::default(),
         duration_s: 0.0,
     };
     (family.change)(&mut draw, &mut plan);

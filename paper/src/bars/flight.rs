@@ -86,7 +86,7 @@ fn fly_plant(
             plan.place_m(time_s),
         ));
         let inputs = PlantInputs {
-            disturbance: plan.disturbance(),
+            disturbance: plan.disturbance(time_s),
             ..PlantInputs::rotor_speeds(command_rad_s(time_s, &state))
         };
         for _ in 0..STEPS {

@@ -31,7 +31,7 @@ pub use flyer::Flyer;
 pub use measures::{largest, rms};
 pub use optimum::{Optimum, OptimumResult};
 pub use path::{Path, Shape};
-pub use plan::{Demand, Plan, Points, Row};
+pub use plan::{Demand, Plan, Points, Pushes, Row};
 pub use plans::plans;
 pub use random::judged as judged_random_flights;
 pub use result::{BarResult, flown};

@@ -132,6 +132,38 @@ fn to_and_fro(speed_m_s: f64, time_s: f64) -> PositionReference {
     }
 }
 
+/// Rates of the swings of gusts, rad/s, none of which is a multiple of another.
+const SWINGS_RAD_S: [f64; 5] = [0.3, 0.7, 1.3, 2.9, 5.1];
+/// When a torque comes and goes, s.
+const TORQUE_S: core::ops::Range<f64> = 5.0..15.0;
+
+/// Forces and torques that come and go.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pushes {
+    /// Largest force of each of the swings of gusts along each axis, N.
+    pub gust_n: f64,
+    /// A torque from 5 to 15 s, FRD, N·m.
+    pub torque_n_m: [f64; 3],
+}
+
+impl Pushes {
+    /// The force of gusts at a time, NED, N.
+    fn force_n(&self, time_s: f64) -> Vector3<f64> {
+        Vector3::from_fn(|axis, _| {
+            let axis = axis as f64;
+            let swings = SWINGS_RAD_S.into_iter().zip(0_u8..).map(|(rate_rad_s, at)| {
+                let phase_rad = 2.1 * f64::from(at) + axis;
+                (rate_rad_s * (1.0 + 0.13 * axis) * time_s + phase_rad).sin()
+            });
+            self.gust_n * swings.sum::<f64>()
+        })
+    }
+
+    fn torque_n_m(&self, time_s: f64) -> Vector3<f64> {
+        if TORQUE_S.contains(&time_s) { self.torque_n_m.into() } else { Vector3::zeros() }
+    }
+}
+
 /// One flight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -145,6 +177,8 @@ pub struct Plan {
     pub demand: Demand,
     /// A steady force from the start, NED, N.
     pub force_n: [f64; 3],
+    /// What comes and goes beside it.
+    pub pushes: Pushes,
     /// How long, s.
     pub duration_s: f64,
 }
@@ -174,16 +208,21 @@ impl Plan {
         }
     }
 
-    /// What pushes.
-    pub fn disturbance(&self) -> Disturbance {
-        Disturbance { force_n: Vector3::from(self.force_n), ..Disturbance::default() }
+    /// What pushes at a time.
+    pub fn disturbance(&self, time_s: f64) -> Disturbance {
+        Disturbance {
+            force_n: Vector3::from(self.force_n) + self.pushes.force_n(time_s),
+            torque_n_m: self.pushes.torque_n_m(time_s),
+            ..Disturbance::default()
+        }
     }
 
     /// All inputs of a closed loop.
     pub fn inputs(&self, time_us: u64) -> Inputs {
+        let time_s = time_us as f64 * 1e-6;
         Inputs {
-            reference: self.reference(time_us as f64 * 1e-6),
-            disturbance: self.disturbance(),
+            reference: self.reference(time_s),
+            disturbance: self.disturbance(time_s),
             ..Inputs::default()
         }
     }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use quadrotor::{Airframe, Configuration, GRAVITY_M_S2, Limits, Sensors, commanded_tilt_rad};
 
 use super::path::{Path, START_S, Shape};
-use super::plan::{Demand, Plan, Points, Row};
+use super::plan::{Demand, Plan, Points, Pushes, Row};
 
 /// Raw goals: name, place in NED, m, and how long the flight is, s.
 const GOALS: [(&str, [f64; 3], f64); 11] = [
@@ -108,7 +108,15 @@ fn plan(
     demand: Demand,
     duration_s: f64,
 ) -> Plan {
-    Plan { row, name: name.into(), configuration: *configuration, demand, force_n: [0.0; 3], duration_s }
+    Plan {
+        row,
+        name: name.into(),
+        configuration: *configuration,
+        demand,
+        force_n: [0.0; 3],
+        pushes: Pushes::default(),
+        duration_s,
+    }
 }
 
 fn cruises(base: &Configuration) -> Vec<Plan> {

@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 
-use lmpc::{ControllerState, ModelIncrement, Sample, Step};
+use lmpc::{ControllerState, Sample, Step};
 use nalgebra::{SVector, UnitQuaternion, Vector1, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 
@@ -71,6 +71,8 @@ pub struct AttitudeController {
     deviation: Deviation,
     /// Integral action of the last step, rad/s².
     integral_rad_s2: Vector3<f64>,
+    /// What the rotors did not explain of the angular acceleration at the last sample, FRD, rad/s²; `None` before the first one.
+    disturbance_rad_s2: Option<Vector3<f64>>,
 }
 
 /// Angle, rate and angular acceleration about roll, pitch and yaw less those of the reference.
@@ -165,6 +167,7 @@ impl AttitudeController {
             attitude: *attitude,
             deviation: Deviation::default(),
             integral_rad_s2: Vector3::zeros(),
+            disturbance_rad_s2: None,
         }
     }
 
@@ -208,7 +211,7 @@ impl AttitudeController {
         let deviation = deviation.in_sight(design.attitude.sight_s, most_rad_s2);
         let told = Seen {
             deviation,
-            increment: self.increment(design.attitude.motion.as_ref(), &deviation, &disturbance_rad_s2),
+            increment: self.increment(design, &deviation, &disturbance_rad_s2),
             // A step of the reference's rate is motion of the error, which moves an incremental law at once.
             input_reference: if design.attitude.is_incremental() {
                 Vector3::zeros()
@@ -217,6 +220,7 @@ impl AttitudeController {
             },
             disturbance: disturbance_rad_s2,
         };
+        self.disturbance_rad_s2 = Some(disturbance_rad_s2);
         let room = RotorRoom {
             mixer: &design.mixer,
             thrust_n,
@@ -243,19 +247,22 @@ impl AttitudeController {
         (joined(&lean.input, &turn.input), activity(&lean, &turn))
     }
 
-    /// The motion since the last sample: by the model, if there is one, else as it was measured.
+    /// The motion since the last sample: by the model, if there is one, else as it was measured. A torque that begins to disturb the vehicle is
+    /// a jump of the acceleration, which no model leads to.
     fn increment(
         &self,
-        motion: Option<&ModelIncrement<AXIS_STATES, 1>>,
+        design: &CascadeDesign,
         deviation: &Deviation,
         disturbance_rad_s2: &Vector3<f64>,
     ) -> Deviation {
-        let Some(motion) = motion else { return deviation.since(&self.deviation) };
+        let Some(motion) = &design.attitude.motion else { return deviation.since(&self.deviation) };
+        let before = self.disturbance_rad_s2.unwrap_or(*disturbance_rad_s2);
+        let jump = (disturbance_rad_s2 - before).zip_map(&design.estimator.unsure_rad_s2, beyond);
         let driving = joined(&self.lean.feedback(), &self.turn.feedback()) + disturbance_rad_s2;
         let axes =
             [0, 1, 2].map(|axis| motion.that_led_to(&deviation.states(axis), &Vector1::new(driving[axis])));
         let of = |state: usize| Vector3::from(axes.map(|axis| axis[state]));
-        Deviation { angle_rad: of(0), rate_rad_s: of(1), acceleration_rad_s2: of(2) }
+        Deviation { angle_rad: of(0), rate_rad_s: of(1), acceleration_rad_s2: of(2) + jump }
     }
 
     /// Expresses what is remembered in the body axes of now. A lean stays where it is in the world while the body
@@ -273,6 +280,7 @@ impl AttitudeController {
         self.lean.turn_feedback(|lean| lean * ratio);
         self.turn.turn_feedback(|turn| turn * ratio);
         self.integral_rad_s2 *= ratio;
+        self.disturbance_rad_s2 = self.disturbance_rad_s2.map(|disturbance| disturbance * ratio);
     }
 
     /// Goes on under another law of the same torque. An incremental law has what its reference needs in its feedback, the
@@ -320,6 +328,11 @@ impl AttitudeController {
 /// leans to catch up with its reference.
 fn leaning_and_turning(in_body: &UnitQuaternion<f64>, motion: &Vector3<f64>) -> Vector3<f64> {
     in_body * Vector3::new(motion.x, motion.y, 0.0) + Vector3::z() * motion.z
+}
+
+/// By how much a change is larger than what nobody can be sure of.
+pub(crate) fn beyond(change: f64, unsure: f64) -> f64 {
+    change - change.clamp(-unsure, unsure)
 }
 
 /// A disturbance, rad/s², whose part about yaw is no more than a share of what the rotors can do about it, `turn_rad_s2`.

@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::control::cascade::Cascade;
+use crate::control::clearance::{height_m, is_clear};
 use crate::control::command_limits::CommandLimits;
 use crate::control::control_inputs::{ControlInputs, ControlLaw, Target};
 use crate::control::estimator::Estimator;
@@ -333,7 +334,7 @@ impl ControlState {
         };
         let seen = Observation::new(
             configuration,
-            (&self.estimator, design.cascade.estimator.disturbance_lag_s),
+            (&self.estimator, &design.cascade.estimator),
             &measurement.motion,
             time_us,
         );
@@ -365,7 +366,7 @@ impl ControlState {
             }
         }
         if due.attitude {
-            self.predict(&design.cascade, configuration, &seen, time_us);
+            self.predict(&design.cascade, configuration, &seen, (inputs.ground_z_m, time_us));
         }
         Ok(())
     }
@@ -431,10 +432,14 @@ impl ControlState {
         design: &CascadeDesign,
         configuration: &Configuration,
         seen: &Observation,
-        time_us: u64,
+        (ground_z_m, time_us): (f64, u64),
     ) {
         let times = (time_us, configuration.controllers.attitude.sample_time_us);
         self.estimator.predict(configuration, design, &seen.measured, &self.command.speed_rad_s, times);
+        let height_m = height_m(configuration, ground_z_m, seen.measured.position_m.z);
+        if !is_clear(&configuration.airframe, height_m) {
+            self.estimator.stand();
+        }
     }
 }
 

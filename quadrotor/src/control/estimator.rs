@@ -1,13 +1,15 @@
 //! The stationary Kalman predictor (26) of the vehicle's motion, from position and attitude, or from a noisy velocity, too.
 
-use nalgebra::{UnitQuaternion, Vector1, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::turned;
 use crate::control::euler_equation::angular_acceleration_rad_s2;
 use crate::control::mass_belief::MassBelief;
 use crate::finite::are_finite;
-use crate::{CascadeDesign, Configuration, GRAVITY_M_S2, RigidBody, Sensors, Wrench, wrench_of_rotors};
+use crate::{
+    Airframe, CascadeDesign, Configuration, GRAVITY_M_S2, RigidBody, Sensors, Wrench, wrench_of_rotors,
+};
 
 /// The estimate of the vehicle's motion at the next sample of the attitude controller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -94,6 +96,11 @@ impl Estimator {
         self.rotor_speed_rad_s
     }
 
+    /// On the ground, which answers every torque: what it does is none from outside, and none that is there in flight.
+    pub(crate) fn stand(&mut self) {
+        self.disturbance_rad_s2 = Vector3::zeros();
+    }
+
     /// Goes on under another belief in mass, inertia and drag, for an unchanged vehicle: what thrust and drag are believed to accelerate
     /// more, or less, leaves less, or more, to the disturbance.
     pub(crate) fn believe(&mut self, before: &Configuration, after: &Configuration) {
@@ -138,7 +145,12 @@ impl Estimator {
         let drag = configuration.drag_1_s().component_mul(&self.body.velocity_m_s);
         let inertia = Vector3::from(airframe.inertia_kg_m2) * believed;
         let rate = self.body.body_rate_rad_s;
-        let angular = angular_acceleration_rad_s2(&inertia, &rate, &wrench.torque_n_m);
+        let spin_n_m = if airframe.rotor_spin.inertia_kg_m2 > 0.0 {
+            spin_torque_n_m(airframe, &rate, [&before, &self.rotor_speed_rad_s], design.sample_time_s)
+        } else {
+            Vector3::zeros()
+        };
+        let angular = angular_acceleration_rad_s2(&inertia, &rate, &(wrench.torque_n_m + spin_n_m));
 
         let mut angle = Vector3::zeros();
         let apart = turned(&rotation, &measured.rotation());
@@ -154,7 +166,7 @@ impl Estimator {
             // The angle from the attitude estimated for now.
             let estimate = [0.0, rate[i], self.disturbance_rad_s2[i]];
             let next =
-                design.rotation.predict(&estimate.into(), &Vector1::new(angular[i]), &Vector1::new(apart[i]));
+                design.rotation[i].predict(&estimate, angular[i], [apart[i], measured.body_rate_rad_s[i]]);
             (angle[i], self.body.body_rate_rad_s[i], self.disturbance_rad_s2[i]) =
                 (next[0], next[1], next[2]);
         }
@@ -165,6 +177,19 @@ impl Estimator {
             *self = Self::new(&configuration.sensors, measured, self.rotor_speed_rad_s, self.time_us);
         }
     }
+}
+
+/// Torque of rotors that go from one speed to another in a sample, FRD, N·m: the quicker a disturbance is found, the more their reaction to
+/// being spun up would pass for one.
+fn spin_torque_n_m(
+    airframe: &Airframe,
+    rate_rad_s: &Vector3<f64>,
+    [before, after]: [&[f64; 4]; 2],
+    sample_time_s: f64,
+) -> Vector3<f64> {
+    let speeds_rad_s = core::array::from_fn(|rotor| (before[rotor] + after[rotor]) / 2.0);
+    let accelerations_rad_s2 = core::array::from_fn(|rotor| (after[rotor] - before[rotor]) / sample_time_s);
+    airframe.spin_torque_n_m(rate_rad_s, &speeds_rad_s, &accelerations_rad_s2)
 }
 
 fn mean(one: &Wrench, other: &Wrench) -> Wrench {

@@ -6,6 +6,7 @@ pub(crate) mod attitude_controller;
 pub(crate) mod attitude_reference;
 pub(crate) mod belief;
 pub(crate) mod cascade;
+pub(crate) mod clearance;
 pub(crate) mod command_limits;
 pub(crate) mod control_error;
 pub(crate) mod control_inputs;

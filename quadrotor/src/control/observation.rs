@@ -6,6 +6,7 @@ use crate::control::attitude_controller::VehicleRotation;
 use crate::control::estimator::Estimator;
 use crate::control::euler_equation::angular_acceleration_rad_s2;
 use crate::control::vehicle_motion::{HorizontalMotion, VerticalMotion};
+use crate::design::estimator_design::EstimatorDesign;
 use crate::{Configuration, GRAVITY_M_S2, RigidBody, wrench_of_rotors};
 
 /// The vehicle as the controllers see it at one instant.
@@ -23,6 +24,8 @@ pub(crate) struct Observation {
     disturbance_lag_s: f64,
     /// Angular acceleration that the torques do not explain, FRD, rad/s².
     disturbance_rad_s2: Vector3<f64>,
+    /// By so much that changes under noise alone, rad/s².
+    unsure_rad_s2: Vector3<f64>,
     /// Speeds that the rotors have reached by their model, rad/s.
     pub(crate) rotor_speed_rad_s: [f64; 4],
     /// Torque that they make at those speeds, FRD, N·m.
@@ -30,10 +33,10 @@ pub(crate) struct Observation {
 }
 
 impl Observation {
-    /// Of a measurement, beside what has been estimated until now, with a lag of disturbances, s.
+    /// Of a measurement, beside what has been estimated until now by the predictors of a design.
     pub(crate) fn new(
         configuration: &Configuration,
-        (estimator, disturbance_lag_s): (&Estimator, f64),
+        (estimator, design): (&Estimator, &EstimatorDesign),
         measured: &RigidBody,
         time_us: u64,
     ) -> Self {
@@ -45,8 +48,9 @@ impl Observation {
             body,
             lift_m_s2: made.thrust_n / configuration.believed_mass_kg(),
             disturbance_m_s2: estimator.disturbance_m_s2(),
-            disturbance_lag_s,
+            disturbance_lag_s: design.disturbance_lag_s,
             disturbance_rad_s2: estimator.disturbance_rad_s2(),
+            unsure_rad_s2: design.unsure_rad_s2,
             rotor_speed_rad_s,
             rotor_torque_n_m: made.torque_n_m,
         }
@@ -75,6 +79,7 @@ impl Observation {
             disturbance_m_s2: self.disturbance_m_s2.xy(),
             disturbance_lag_s: self.disturbance_lag_s,
             disturbance_m_s4: turned(&self.disturbance_rad_s2),
+            unsure_m_s4: self.unsure_rad_s2.xy().max() * self.lift_m_s2,
         }
     }
 
@@ -106,6 +111,7 @@ mod tests {
 
     use super::Observation;
     use crate::control::estimator::Estimator;
+    use crate::design::estimator_design::EstimatorDesign;
     use crate::{Configuration, GRAVITY_M_S2, RigidBody, wrench_of_rotors};
 
     /// Acceleration by the thrust along the axis that a body points up, m/s²: what the derivatives are taken of.
@@ -130,7 +136,8 @@ mod tests {
             body_rate_rad_s: rate,
         };
         let estimator = Estimator::new(&configuration.sensors, &body, rotor_speed_rad_s, 0);
-        let seen = Observation::new(&configuration, (&estimator, 0.0), &body, 0);
+        let design = EstimatorDesign::new(&configuration).expect("a design");
+        let seen = Observation::new(&configuration, (&estimator, &design), &body, 0);
         let asked_rad_s2 = Vector3::new(-1.5, 0.5, 0.0);
         let motion = seen.horizontal(&configuration, &asked_rad_s2);
         assert_eq!((motion.position_m, motion.velocity_m_s), (body.position_m.xy(), body.velocity_m_s.xy()));

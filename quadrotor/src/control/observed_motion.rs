@@ -142,6 +142,11 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
         Some(model.feedback_before(answer, &moving))
     }
 
+    /// Whether a sample has been seen.
+    pub(crate) fn has_begun(&self) -> bool {
+        self.deviation.is_some()
+    }
+
     /// d.
     pub(crate) fn disturbance(&self) -> SVector<f64, P> {
         self.disturbance

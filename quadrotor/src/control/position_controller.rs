@@ -7,6 +7,7 @@ use nalgebra::{SVector, Vector2};
 use serde::{Deserialize, Serialize};
 
 use crate::control::activity::ControllerActivity;
+use crate::control::attitude_controller::beyond;
 use crate::control::governor::{Governor, integral_rate};
 use crate::control::largest_lean::LargestLean;
 use crate::control::observed_motion::{MotionSample, ObservedMotion};
@@ -109,8 +110,9 @@ impl PositionController {
             jump: by_axis([zero, zero, zero, seen_jerk_jump, seen_snap_jump, zero]),
         };
         let sample_time_s = configuration.controllers.position.sample_time_s();
+        let thrown = self.thrown.change_m_s4(&turning).map(|change| beyond(change, seen.unsure_m_s4));
         let (lasting_increment, passing) =
-            self.increments(design, &motion, (sample_time_s, seen.disturbance_lag_s));
+            self.increments(design, &motion, (sample_time_s, seen.disturbance_lag_s), &thrown);
         let under_way =
             self.thrown.turn_under_way(seen, &turning, (design.attitude_loop(), sample_time_s), &jerk_jump);
         let (error_m, disturbance_m_s2) = (turn.vector(&error), turn.vector(&seen.disturbance_m_s2));
@@ -164,21 +166,25 @@ impl PositionController {
     }
 
     /// The increment of a sample that limits go by, and what beside it only the feedback answers to. Noise looks like a force that comes and
-    /// goes: a plan that took it to last would keep off limits that are not near.
+    /// goes: a plan that took it to last would keep off limits that are not near. And a torque that has begun to turn the body, `thrown` m/s⁴,
+    /// is a jump of the snap, which no model leads to: a plan would take it to go on.
     fn increments(
         &mut self,
         design: &CascadeDesign,
         motion: &MotionSample<POSITION_STATES, 2>,
         times @ (_, lag_s): (f64, f64),
+        thrown: &Vector2<f64>,
     ) -> (SVector<f64, POSITION_STATES>, SVector<f64, POSITION_STATES>) {
         let model = design.position.motion.as_ref();
+        let zero = Vector2::zeros();
+        let thrown = if model.is_some() && self.observed.has_begun() { *thrown } else { zero };
         let increment = self.observed.step(model, motion, times);
         let foresees = lag_s > 0.0 && design.position.law.regulator().is_none();
         let passing = match model {
             Some(model) if foresees => self.observed.passing(model),
             _ => SVector::zeros(),
         };
-        (increment - passing, passing)
+        (increment - passing, passing + by_axis([zero, zero, zero, zero, thrown, zero]))
     }
 
     /// A step of the law for a sample in turned axes, and its answer to what of the motion passes; its input is in those of the world.

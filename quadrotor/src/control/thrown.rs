@@ -23,6 +23,11 @@ pub(crate) struct Thrown {
 }
 
 impl Thrown {
+    /// By how much what turns the body beside the rotors has changed since the last sample, m/s⁴.
+    pub(crate) fn change_m_s4(&self, turning_m_s4: &Vector2<f64>) -> Vector2<f64> {
+        turning_m_s4 - self.turning_m_s4
+    }
+
     /// What is under way at a sample, `turning_m_s4` of it by what turns the body beside the rotors: it is answered within the delay of the
     /// attitude loop. `jump_m_s3` is the jump of the reference's jerk.
     pub(crate) fn turn_under_way(
@@ -35,7 +40,7 @@ impl Thrown {
         // Without a loop the attitude is taken for instantaneous.
         let delay_s = attitude.map_or(0.0, |attitude| attitude.delay_s());
         let kept = if delay_s > 0.0 { libm::exp(-sample_time_s / delay_s) } else { 0.0 };
-        self.thrown_m_s4 = self.thrown_m_s4 * kept + (turning_m_s4 - self.turning_m_s4).norm();
+        self.thrown_m_s4 = self.thrown_m_s4 * kept + self.change_m_s4(turning_m_s4).norm();
         self.turning_m_s4 = *turning_m_s4;
         let made_m_s4 = (seen.snap_m_s4 + turning_m_s4).norm();
         let asked_m_s4 = (seen.asked_snap_m_s4 + turning_m_s4).norm();
@@ -67,6 +72,7 @@ mod tests {
             asked_snap_m_s4: zero,
             disturbance_m_s2: zero,
             disturbance_m_s4: zero,
+            unsure_m_s4: 0.0,
             disturbance_lag_s: 0.0,
         }
     }

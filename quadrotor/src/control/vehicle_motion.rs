@@ -23,6 +23,8 @@ pub(crate) struct HorizontalMotion {
     pub(crate) disturbance_lag_s: f64,
     /// Snap by the estimated angular acceleration that torques do not explain, m/s⁴.
     pub(crate) disturbance_m_s4: Vector2<f64>,
+    /// By so much that changes under noise alone, m/s⁴.
+    pub(crate) unsure_m_s4: f64,
 }
 
 /// Motion down.

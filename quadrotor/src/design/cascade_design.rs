@@ -187,7 +187,8 @@ impl Redesigned {
                 || one.sensors.position_noise_m != other.sensors.position_noise_m
                 || one.sensors.velocity_noise_m_s != other.sensors.velocity_noise_m_s
                 || one.sensors.output_feedback != other.sensors.output_feedback
-                || one.sensors.attitude_noise_rad != other.sensors.attitude_noise_rad,
+                || one.sensors.attitude_noise_rad != other.sensors.attitude_noise_rad
+                || one.sensors.body_rate_noise_rad_s != other.sensors.body_rate_noise_rad_s,
         }
     }
 }

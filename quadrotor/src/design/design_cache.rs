@@ -100,7 +100,7 @@ mod tests {
     use alloc::sync::Arc;
 
     use super::DesignCache;
-    use crate::{Configuration, ControllerKind, PreparedDesign, RotorLayout};
+    use crate::{Configuration, ControllerKind, PredictionModel, PreparedDesign, RotorLayout};
 
     fn of_mass(mass_kg: f64) -> Configuration {
         let mut configuration = Configuration::default();
@@ -152,7 +152,8 @@ mod tests {
         assert_eq!(cache.design(&first).unwrap(), PreparedDesign::new(&first).unwrap());
         // A refusal does not blame what was designed before.
         changed = first;
-        changed.airframe.rotor_spin.inertia_kg_m2 = 4e-4;
+        changed.controllers.model = PredictionModel::Paper;
+        changed.airframe.rotor_time_constant_s = 0.06;
         assert_eq!(cache.design(&changed), PreparedDesign::new(&changed));
         assert!(cache.design(&changed).is_err());
     }

@@ -1,91 +1,46 @@
-//! The gains of the stationary Kalman predictor (26).
+//! The gains of the stationary Kalman predictors (26).
 
-use lmpc::{DesignError, KalmanDesign, KalmanPredictor, NoiseCovariance, StateSpace};
-use nalgebra::{DMatrix, DVector, Matrix3, SVector, Vector1, Vector2, Vector3};
+use lmpc::DesignError;
+use nalgebra::Vector3;
 
+use crate::design::axis_predictor::{AxisPredictor, Missed};
 use crate::{Configuration, Sensors};
 
 /// Smallest standard deviations that the design counts with, m and rad: without noise the predictor would
 /// follow each rounding.
 const SMALLEST_NOISE: (f64, f64) = (1e-3, 1e-3);
-/// The same of the velocity, m/s.
-const SMALLEST_VELOCITY_NOISE_M_S: f64 = 1e-3;
+/// The same of the velocity, m/s, and of body rates, rad/s: that of a gyroscope.
+const SMALLEST_RATE_NOISE: (f64, f64) = (1e-3, 5e-3);
 /// The longest memory of positions beside a measured velocity, s. The more exact the velocity, the longer its integral would stand for
 /// the position, with the error of the first reading in it.
 const LONGEST_MEMORY_S: f64 = 1.0;
-/// Standard deviation of the acceleration that the model misses from sample to sample, m/s² and rad/s².
-const MODEL_NOISE: (f64, f64) = (0.3, 3.0);
-/// The same beside a measured velocity, m/s²: a model that is trusted more lags behind while the vehicle is not what it is taken for.
-const MODEL_NOISE_BESIDE_VELOCITY: f64 = 1.0;
-/// How fast disturbances wander, m/s² and rad/s² per √s.
-const WANDERING: (f64, f64) = (0.3, 3.0);
+/// What models of translation miss where positions alone are read.
+const BESIDE_POSITIONS: Missed = Missed { acceleration: 0.3, wandering: 0.3, drift: 0.0 };
+/// Acceleration that is missed beside a measured velocity, m/s²: a model that is trusted more lags behind while the vehicle is not what it
+/// is taken for.
+const BESIDE_VELOCITY_M_S2: f64 = 1.0;
+/// What the model of rotation misses where angles alone are read: a torque about roll and pitch is found within 0.07 s. Faster, a milliradian
+/// of noise would pass for torques that shake the vehicle.
+const BESIDE_LEAN: Missed = Missed { acceleration: 3.0, wandering: 10.0, drift: 0.0 };
+/// The same beside measured body rates: a torque is found within three samples.
+const BESIDE_LEAN_RATES: Missed = Missed { wandering: 30.0, ..BESIDE_LEAN };
+/// The same about yaw, with and without its rate, within 0.14 s: there is less torque about yaw, which that noise would pass for more than,
+/// and what rotors do that spin up is known less well than what their thrust does.
+const BESIDE_HEADING: Missed = Missed { wandering: 3.0, ..BESIDE_LEAN };
+/// So many deviations of its noise an unexplained angular acceleration must change by to have changed.
+const SURE_DEVIATIONS: f64 = 8.0;
 
-/// One axis: position or angle, its rate, and the acceleration that the model does not explain.
-pub(crate) type Axis = KalmanPredictor<3, 1, 1>;
-
-/// One axis of translation, by what is measured of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum TranslationAxis {
-    /// The position alone is read.
-    ByPosition(Axis),
-    /// Position and velocity are.
-    ByMotion(KalmanPredictor<3, 1, 2>),
-}
-
-impl TranslationAxis {
-    fn new(sensors: &Sensors, sample_time_s: f64) -> Result<Self, DesignError> {
-        let position_m = sensors.position_noise_m.max(SMALLEST_NOISE.0);
-        if sensors.filters_motion() {
-            let velocity_m_s = sensors.velocity_noise_m_s.max(SMALLEST_VELOCITY_NOISE_M_S);
-            let deviations = [position_m, velocity_m_s];
-            let drift = position_m / LONGEST_MEMORY_S;
-            axis(sample_time_s, deviations, MODEL_NOISE_BESIDE_VELOCITY, WANDERING.0, drift)
-                .map(Self::ByMotion)
-        } else {
-            axis(sample_time_s, [position_m], MODEL_NOISE.0, WANDERING.0, 0.0).map(Self::ByPosition)
-        }
-    }
-
-    /// How far it lags behind an acceleration that the model does not explain, s. An error fades with e⁺ = (A − K C) e: after a step of d its
-    /// third element is T Σ (A − K C)ᵏ long, which is T (I − A + K C)⁻¹.
-    fn disturbance_lag_s(&self, sample_time_s: f64) -> Result<f64, DesignError> {
-        // Without input and measurement, an estimate fades as an error does.
-        let faded = Matrix3::from_columns(
-            &[Vector3::x(), Vector3::y(), Vector3::z()]
-                .map(|error| self.predict(&error.into(), 0.0, [0.0; 2])),
-        );
-        let lasting = (Matrix3::identity() - faded).try_inverse();
-        let lasting = lasting.ok_or(DesignError::NotFinite { name: "(I − A + K C)⁻¹" })?;
-        Ok(sample_time_s * lasting[(2, 2)])
-    }
-
-    /// Position, m, velocity, m/s, and unexplained acceleration, m/s², at the next sample, from those at this one, the acceleration
-    /// by the model until then, m/s², and the measured position and velocity.
-    // The estimate stays in registers.
-    #[inline(always)]
-    pub(crate) fn predict(
-        &self,
-        estimate: &[f64; 3],
-        modelled_m_s2: f64,
-        [position_m, velocity_m_s]: [f64; 2],
-    ) -> SVector<f64, 3> {
-        let (estimate, input) = (SVector::from(*estimate), Vector1::new(modelled_m_s2));
-        match self {
-            Self::ByPosition(axis) => axis.predict(&estimate, &input, &Vector1::new(position_m)),
-            Self::ByMotion(axis) => axis.predict(&estimate, &input, &Vector2::new(position_m, velocity_m_s)),
-        }
-    }
-}
-
-/// The predictors of one axis of translation and of one of rotation, at the attitude controller's sample
-/// time.
+/// The predictors of one axis of translation and of rotation, at the attitude controller's sample time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EstimatorDesign {
-    pub(crate) translation: TranslationAxis,
-    pub(crate) rotation: Axis,
+    pub(crate) translation: AxisPredictor,
+    /// Of roll, pitch and yaw.
+    pub(crate) rotation: [AxisPredictor; 3],
     /// How far the predictor lags behind an acceleration that the model does not explain, s: sooner, noise does not tell one. Zero where
     /// velocities are measured exactly.
     pub(crate) disturbance_lag_s: f64,
+    /// By so much the unexplained angular acceleration changes under noise alone, FRD, rad/s².
+    pub(crate) unsure_rad_s2: Vector3<f64>,
     pub(crate) sample_time_s: f64,
 }
 
@@ -93,54 +48,74 @@ impl EstimatorDesign {
     /// For the noise and the sample time of a configuration.
     ///
     /// # Errors
-    /// Those of [`KalmanDesign::new`].
+    /// Those of [`KalmanDesign::new`](lmpc::KalmanDesign::new).
     pub(crate) fn new(configuration: &Configuration) -> Result<Self, DesignError> {
         let sensors = &configuration.sensors;
         let sample_time_s = configuration.controllers.attitude.sample_time_s();
-        let translation = TranslationAxis::new(sensors, sample_time_s)?;
+        let translation = translation(sensors, sample_time_s)?;
+        let beside_lean = if sensors.output_feedback { BESIDE_LEAN } else { BESIDE_LEAN_RATES };
+        let lean = rotation(sensors, sample_time_s, &beside_lean)?;
+        let turn = rotation(sensors, sample_time_s, &BESIDE_HEADING)?;
+        let rotation = [lean, lean, turn];
         let estimates = sensors.estimates_motion();
+        let turning = [sensors.attitude_noise_rad, sensors.body_rate_noise_rad_s];
         Ok(Self {
             translation,
-            rotation: axis(
-                sample_time_s,
-                [sensors.attitude_noise_rad.max(SMALLEST_NOISE.1)],
-                MODEL_NOISE.1,
-                WANDERING.1,
-                0.0,
-            )?,
+            rotation,
             disturbance_lag_s: if estimates { translation.disturbance_lag_s(sample_time_s)? } else { 0.0 },
+            unsure_rad_s2: Vector3::from(rotation.map(|axis| axis.disturbance_noise(turning)))
+                * SURE_DEVIATIONS,
             sample_time_s,
         })
     }
 }
 
-/// The predictor of \[p; v; d\]: p⁺ = p + T v + T²/2 (u + d), v⁺ = v + T (u + d), d⁺ = d, measuring the first Q of them under noise
-/// of these standard deviations. By `drift` T in a sample p moves beside v.
-fn axis<const Q: usize>(
-    t: f64,
-    noise: [f64; Q],
-    model_noise: f64,
-    wandering: f64,
-    drift: f64,
-) -> Result<KalmanPredictor<3, 1, Q>, DesignError> {
-    let half = t * t / 2.0;
-    let a = DMatrix::from_row_slice(3, 3, &[1.0, t, half, 0.0, 1.0, t, 0.0, 0.0, 1.0]);
-    let b = DMatrix::from_column_slice(3, 1, &[half, t, 0.0]);
-    // w = [T²/2; T; 0] a + [0; 0; √T] b + [T; 0; 0] c
-    let missed = &b * model_noise;
-    let plant = StateSpace::new(a, b, DMatrix::identity(Q, 3))?;
-    let mut w = &missed * missed.transpose();
-    w[(2, 2)] = wandering * wandering * t;
-    w[(0, 0)] += drift * t * drift * t;
-    let v = DMatrix::from_diagonal(&DVector::from_iterator(Q, noise.map(|deviation| deviation * deviation)));
-    let covariance = NoiseCovariance::uncorrelated(w, v);
-    KalmanPredictor::new(&plant, &KalmanDesign::new(&plant, &covariance)?)
+fn translation(sensors: &Sensors, sample_time_s: f64) -> Result<AxisPredictor, DesignError> {
+    let position_m = sensors.position_noise_m.max(SMALLEST_NOISE.0);
+    if !sensors.filters_motion() {
+        return AxisPredictor::by_place(sample_time_s, position_m, &BESIDE_POSITIONS);
+    }
+    let velocity_m_s = sensors.velocity_noise_m_s.max(SMALLEST_RATE_NOISE.0);
+    let missed = Missed {
+        acceleration: BESIDE_VELOCITY_M_S2,
+        drift: position_m / LONGEST_MEMORY_S,
+        ..BESIDE_POSITIONS
+    };
+    AxisPredictor::by_motion(sample_time_s, [position_m, velocity_m_s], &missed)
+}
+
+fn rotation(sensors: &Sensors, sample_time_s: f64, missed: &Missed) -> Result<AxisPredictor, DesignError> {
+    let angle_rad = sensors.attitude_noise_rad.max(SMALLEST_NOISE.1);
+    if sensors.output_feedback {
+        return AxisPredictor::by_place(sample_time_s, angle_rad, missed);
+    }
+    let rate_rad_s = sensors.body_rate_noise_rad_s.max(SMALLEST_RATE_NOISE.1);
+    AxisPredictor::by_motion(sample_time_s, [angle_rad, rate_rad_s], missed)
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector3;
+
     use super::EstimatorDesign;
     use crate::{Configuration, Sensors};
+
+    /// A torque is found within three samples by body rates, within 0.07 s by angles alone, and later under noise, of which it must
+    /// stick out.
+    #[test]
+    fn torques_are_found_as_soon_as_noise_lets_them() {
+        let of = |sensors: Sensors| {
+            EstimatorDesign::new(&Configuration { sensors, ..Configuration::default() }).unwrap()
+        };
+        let lag_s = |design: &EstimatorDesign| design.rotation[0].disturbance_lag_s(0.01).unwrap();
+        let exact = of(Sensors::default());
+        let angles = of(Sensors { output_feedback: true, ..Sensors::default() });
+        assert!(lag_s(&exact) < 0.03 && lag_s(&angles) < 0.07, "{} {}", lag_s(&exact), lag_s(&angles));
+        assert_eq!((exact.unsure_rad_s2, angles.unsure_rad_s2), (Vector3::zeros(), Vector3::zeros()));
+        let noisy = Sensors { attitude_noise_rad: 0.01, body_rate_noise_rad_s: 0.1, ..Sensors::default() };
+        let noisy = of(noisy);
+        assert!(lag_s(&noisy) > lag_s(&exact) && noisy.unsure_rad_s2.min() > 1.0, "{noisy:?}");
+    }
 
     /// After a step of an acceleration that the model does not explain, what is missing of its estimate adds up to the lag.
     #[test]

@@ -5,6 +5,7 @@ pub(crate) mod attitude_bandwidth;
 pub(crate) mod attitude_design;
 pub(crate) mod attitude_limits;
 pub(crate) mod attitude_loop;
+pub(crate) mod axis_predictor;
 pub(crate) mod braking_way;
 pub(crate) mod capacities;
 pub(crate) mod cascade_design;

@@ -7,6 +7,7 @@ mod attitude_target;
 mod control_loop;
 mod controllers;
 mod determinism;
+mod disturbances;
 mod estimate;
 mod extended_flights;
 mod extended_physics;

@@ -1,6 +1,7 @@
 //! What a control loop learns of its vehicle.
 
 use super::ControlState;
+use crate::control::clearance::height_m;
 use crate::control::control_inputs::ControlLaw;
 use crate::control::learning::mass_and_drag::FlightSample;
 use crate::control::learning::motion_equation::MeasuredMotion;
@@ -27,7 +28,6 @@ impl ControlState {
         time_us: u64,
     ) -> Configuration {
         let believed = self.believed(configuration);
-        let height_m = ground_z_m - measured.position_m.z;
         if self.law == ControlLaw::RotorLoss {
             self.learned.interrupt();
             return believed;
@@ -40,7 +40,7 @@ impl ControlState {
             } else {
                 MeasuredMotion::Velocity(measured.velocity_m_s)
             },
-            height_m: configuration.environment.ground_plane.then_some(height_m),
+            height_m: height_m(configuration, ground_z_m, measured.position_m.z),
             velocity_m_s: seen.velocity_m_s,
             attitude: seen.rotation(),
             rotor_speed_rad_s: &self.estimator.rotor_speed_rad_s(),

@@ -3,6 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
+use crate::control::clearance::is_clear;
 use crate::control::learning::averaging::{Averaging, SampledAveraging};
 use crate::control::learning::bounded_estimate::BoundedEstimate;
 use crate::control::learning::excitation::{Excitation, Shown};
@@ -14,6 +15,7 @@ use crate::control::learning::prior_knowledge::{
     DRAG_DEVIATION_1_S, MOST_FORCE_M_S2, UNKNOWNS, Unknowns, believed, prior,
 };
 use crate::control::learning::steady_thrust::SteadyThrust;
+use crate::control::learning::thrust_fit::ThrustFit;
 use crate::{Belief, Configuration, GRAVITY_M_S2, Sensors, wrench_of_rotors};
 
 /// Most inertia that a learned mass stands for, as a multiple of the configured one.
@@ -41,6 +43,12 @@ const MOST_SURPRISES: f64 = 1.5;
 const STEADY_SHARE: f64 = 0.4;
 /// How many times more a gust may change the force along the thrust than it shows at once across it.
 const GUST_SWINGS: f64 = 5.0;
+/// Equations of a filter that has taken in less than this tell nothing of gusts.
+const FITTED: f64 = 0.5;
+/// What the thrust does not explain of the force along it may be this many deviations of the noise.
+const FIT_DEVIATIONS: f64 = 2.0;
+/// How many times more a gust changes the force along the thrust than the thrust, which answers it, leaves unexplained.
+const FIT_SWINGS: f64 = 20.0;
 
 /// Time from one equation that is learned from to the next, µs, when a flight has settled: short beside the memory of the filter, so that
 /// those between them tell nothing that the next one does not.
@@ -49,8 +57,6 @@ pub(super) const LEARNS_EACH_US: u64 = 20_000;
 const LEAST_THRUST_SHARE: f64 = 0.2;
 /// Slower than this, m/s, by what the filter has taken in of the velocity, it may stand on something that carries it.
 const AT_REST_M_S: f64 = 0.02;
-/// So high above a ground plane, m, feet that reach down do not touch it.
-const CLEARANCE_M: f64 = 0.1;
 /// Share of a rotor's range of speeds from its upper end at which it is saturated.
 const SATURATED_SHARE: f64 = 1e-3;
 
@@ -91,6 +97,8 @@ pub(crate) struct MassAndDrag {
     steady_force_m_s2: Vector3<f64>,
     /// Thrust per mass of these seconds.
     thrust: SteadyThrust,
+    /// Of the force along the thrust on the thrust of these seconds.
+    fit: ThrustFit,
     /// Time in which there is no surprise, s.
     settling_s: f64,
     /// How much forces from outside change, m/s², by those across the thrust: no mass does that.
@@ -111,6 +119,7 @@ impl MassAndDrag {
             latest_us: None,
             steady_force_m_s2: Vector3::zeros(),
             thrust: SteadyThrust::new(),
+            fit: ThrustFit::new(),
             settling_s: SETTLING_S,
             gusts_m_s2: 0.0,
             surprises: 0.0,
@@ -199,6 +208,7 @@ impl MassAndDrag {
     pub(crate) fn interrupt(&mut self) {
         self.equation = MotionEquation::new();
         self.excitation = Excitation::new();
+        self.fit.begin_anew();
         self.latest_us = None;
     }
 
@@ -237,9 +247,15 @@ impl MassAndDrag {
             return false;
         }
         let noise_m_s2 = noise_m_s2(&configuration.sensors, terms.filled, sampled_s);
+        if terms.filled > FITTED {
+            let sensed_m2_s4 = noise_m_s2 * noise_m_s2 - MODEL_NOISE_M_S2 * MODEL_NOISE_M_S2;
+            let noise_m_s2 = FIT_DEVIATIONS * libm::sqrt(sensed_m2_s4.max(0.0));
+            self.fit.see(&self.along_thrust(configuration, &terms), averaging.steady_motion, noise_m_s2);
+        }
         // Also of what is not learned from: where the thrust was before it changed shows the mass as soon as it has changed.
         let (along_m_s2, drag_1_s) = (self.noise_along_m_s2(noise_m_s2), self.drag_1_s());
-        let shown = self.excitation.observe(&terms, averaging.steady_motion, (along_m_s2, &drag_1_s));
+        let mut shown = self.excitation.observe(&terms, averaging.steady_motion, (along_m_s2, &drag_1_s));
+        shown.mass &= !self.fit.is_in_doubt();
         let moves = terms.velocity_m_s.norm() > AT_REST_M_S * terms.filled;
         let learns = moves && !is_saturated(configuration, sample);
         if learns {
@@ -266,7 +282,9 @@ impl MassAndDrag {
         let swing_m_s2 = (change_m_s2.xy().norm() - with_speed_m_s2) / GUST_SWINGS;
         let kept = averaging.gusts_kept;
         self.watch_gusts(&rows, (unexplained_m_s2.xy().norm(), swing_m_s2), (noise_m_s2, kept));
-        let surprise_m_s2 = SURPRISE_M_S2 + SURPRISE_DEVIATIONS * noise_m_s2 + GUST_SWINGS * self.gusts_m_s2;
+        let surprise_m_s2 = SURPRISE_M_S2
+            + SURPRISE_DEVIATIONS * noise_m_s2
+            + self.swing_along_m_s2(self.fit.deviation_m_s2(), noise_m_s2);
         self.surprises *= kept;
         let along_m_s2 = libm::fabs(change_m_s2.z);
         let is_surprised = self.settling_s == 0.0 && along_m_s2 > surprise_m_s2;
@@ -286,6 +304,7 @@ impl MassAndDrag {
             self.steady_force_m_s2 = self.force_m_s2();
             self.settling_s = SETTLING_S;
             self.surprises += 1.0;
+            self.fit.jump();
             self.interrupt();
             return;
         }
@@ -327,7 +346,25 @@ impl MassAndDrag {
 
     /// Deviation of the equation along the thrust, m/s²: a gust across the thrust comes with one along it, which would pass for mass.
     fn noise_along_m_s2(&self, noise_m_s2: f64) -> f64 {
-        length(noise_m_s2, GUST_SWINGS * self.gusts_m_s2)
+        let fit = &self.fit;
+        let unexplained_m_s2 = fit.deviation_m_s2().max(fit.present_deviation_m_s2());
+        length(noise_m_s2, self.swing_along_m_s2(unexplained_m_s2, noise_m_s2))
+    }
+
+    /// How much forces from outside change along the thrust, m/s²: by those across it, and by what the thrust does not explain.
+    fn swing_along_m_s2(&self, unexplained_m_s2: f64, noise_m_s2: f64) -> f64 {
+        let exceeding_m_s2 = unexplained_m_s2 - FIT_DEVIATIONS * noise_m_s2;
+        (GUST_SWINGS * self.gusts_m_s2).max(FIT_SWINGS * exceeding_m_s2)
+    }
+
+    /// Thrust per mass, m/s², speed along it, m/s, and specific force along it, m/s², but for the drag that is believed in and for level forces, which
+    /// lean into it; FRD, of a filter as far as it is filled.
+    fn along_thrust(&self, configuration: &Configuration, terms: &Terms) -> Vector3<f64> {
+        let velocity_m_s = terms.velocity_m_s.row(2).transpose();
+        let drag_m_s2 = velocity_m_s.dot(&configuration.drag_1_s());
+        let level_m_s2 = (terms.in_body.row(2).columns(0, 2) * self.force_m_s2().xy()).x;
+        let force_m_s2 = terms.specific_force_m_s2.z + drag_m_s2 - level_m_s2;
+        Vector3::new(terms.thrust_m_s2, velocity_m_s.sum(), force_m_s2) / terms.filled
     }
 
     /// Fades gusts to the share that is `kept`, and takes for one what is not explained of the force across the thrust, as far as it is not a drag that is still to be learned, and a
@@ -373,6 +410,7 @@ impl MassAndDrag {
             && (0.0..=MOST_FORCE_M_S2).contains(&self.gusts_m_s2)
             && (0.0..=MOST_SURPRISES + 1.0).contains(&self.surprises)
             && self.thrust.is_possible()
+            && self.fit.is_possible()
             && self.before.is_none_or(|before| before.is_possible(&prior(configuration)))
     }
 }
@@ -425,9 +463,7 @@ fn thrust_per_mass_m_s2(configuration: &Configuration, sample: &FlightSample<'_>
 
 /// Whether an instant belongs to a flight that shows a mass: clear of the ground, and not in free fall.
 fn flies(configuration: &Configuration, sample: &FlightSample<'_>, thrust_m_s2: f64) -> bool {
-    let airframe = &configuration.airframe;
-    let reach_m = airframe.arm_length_m * airframe.layout.reach();
-    let is_clear = sample.height_m.is_none_or(|height_m| height_m > reach_m + CLEARANCE_M);
+    let is_clear = is_clear(&configuration.airframe, sample.height_m);
     is_clear && thrust_m_s2 > LEAST_THRUST_SHARE * GRAVITY_M_S2
 }
 

@@ -9,3 +9,4 @@ pub(crate) mod mass_and_drag;
 pub(crate) mod motion_equation;
 mod prior_knowledge;
 pub(crate) mod steady_thrust;
+pub(crate) mod thrust_fit;

@@ -3,10 +3,13 @@
 use nalgebra::SVector;
 
 use crate::control::observed_motion::{MotionModel, MotionSample, ObservedMotion};
-use crate::design::estimator_design::TranslationAxis;
+use crate::design::axis_predictor::AxisPredictor;
 use crate::design::stability::linear_law::{ChannelSample, LinearLaw};
 use crate::design::stability::loop_events::LoopEvent;
 use crate::{CascadeDesign, Configuration};
+
+/// Place of the snap among the derivatives of a position; a law of the altitude does not go by it.
+const SNAP: usize = 4;
 
 /// One axis of translation: what its controller and the estimator do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,7 +19,9 @@ pub(crate) struct MovingAxis<const K: usize> {
     motion: Option<MotionModel<K, 1>>,
     /// Whether the law goes by the estimate of position and velocity.
     estimated: bool,
-    estimator: TranslationAxis,
+    estimator: AxisPredictor,
+    /// Whether a change of what turns the body is surely one: noise hides small ones.
+    is_sure: bool,
 }
 
 /// State of a [`MovingAxis`]: small deviations from hover.
@@ -34,16 +39,18 @@ pub(crate) struct Moving {
     found: f64,
     /// Position, velocity and unexplained acceleration.
     estimate: [f64; 3],
+    /// The snap that nobody asked for, at the last sample, m/s⁴.
+    unasked: f64,
 }
 
 impl Moving {
     /// Number of values.
-    pub(crate) const SIZE: usize = 13;
+    pub(crate) const SIZE: usize = 14;
     /// Place of the position among them.
     pub(crate) const POSITION: usize = 0;
 
     pub(crate) fn from_values(values: &[f64; Self::SIZE]) -> Self {
-        let [position, velocity, m0, m1, m2, m3, m4, m5, feedback, found, e0, e1, e2] = *values;
+        let [position, velocity, m0, m1, m2, m3, m4, m5, feedback, found, e0, e1, e2, unasked] = *values;
         Self {
             position,
             velocity,
@@ -51,12 +58,28 @@ impl Moving {
             feedback,
             found,
             estimate: [e0, e1, e2],
+            unasked,
         }
     }
 
     pub(crate) fn values(&self) -> [f64; Self::SIZE] {
         let ([m0, m1, m2, m3, m4, m5], [e0, e1, e2]) = (self.measured, self.estimate);
-        [self.position, self.velocity, m0, m1, m2, m3, m4, m5, self.feedback, self.found, e0, e1, e2]
+        [
+            self.position,
+            self.velocity,
+            m0,
+            m1,
+            m2,
+            m3,
+            m4,
+            m5,
+            self.feedback,
+            self.found,
+            e0,
+            e1,
+            e2,
+            self.unasked,
+        ]
     }
 }
 
@@ -72,6 +95,7 @@ impl<const K: usize> MovingAxis<K> {
             motion,
             estimated: configuration.sensors.estimates_motion(),
             estimator: design.estimator.translation,
+            is_sure: design.estimator.unsure_rad_s2.xy().max() == 0.0,
         }
     }
 
@@ -106,7 +130,10 @@ impl<const K: usize> MovingAxis<K> {
                     feedback: [state.feedback].into(),
                     jump: SVector::zeros(),
                 };
-                let increment = observed.increment(model, &seen);
+                let mut increment = observed.increment(model, &seen);
+                if self.is_sure && K > SNAP {
+                    increment[SNAP] += turned - state.unasked;
+                }
                 state.found = observed.disturbance()[0];
                 increment
             }
@@ -126,6 +153,7 @@ impl<const K: usize> MovingAxis<K> {
             disturbance,
         });
         state.measured = seen;
+        state.unasked = turned;
     }
 
     /// The estimator's step to the next sample of the attitude controller: by the acceleration that it models, m/s², and the

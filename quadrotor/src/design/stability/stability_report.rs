@@ -41,17 +41,18 @@ const INERTIA_TOLERANCE: f64 = 0.5;
 /// survives are refused.
 ///
 /// ```
-/// use quadrotor::{Configuration, ConfigurationError, StabilityReport};
+/// use quadrotor::{Configuration, ConfigurationError, PredictionModel, StabilityReport};
 ///
 /// let mut configuration = Configuration::default();
 /// let report = StabilityReport::new(&configuration)?;
 /// assert!(report.loops().iter().all(|each| each.is_stable()));
 /// assert!(report.warnings().is_empty());
 ///
-/// // Heavy rotors turn the body when they change their speed, which the attitude controller does not foresee.
-/// configuration.airframe.rotor_spin.inertia_kg_m2 = 4e-4;
+/// // The printed models do not know that the rotors answer late.
+/// configuration.controllers.model = PredictionModel::Paper;
+/// configuration.airframe.rotor_time_constant_s = 0.06;
 /// let refused = StabilityReport::new(&configuration);
-/// assert!(matches!(refused, Err(ConfigurationError::Unstable { name: "yaw", .. })));
+/// assert!(matches!(refused, Err(ConfigurationError::Unstable { .. })));
 /// # Ok::<(), ConfigurationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -84,7 +85,8 @@ impl StabilityReport {
             let seen = Seen { angle: Some(Turning::ANGLE), position: None, command: Turning::COMMAND };
             LoopStability::of(name, &TurningLoop::new(configuration, axis, lead_s)?, &noise, seen)
         };
-        let [roll, pitch, yaw] = [roll, pitch, yaw].map(|law| TurningAxis::new(configuration, design, law));
+        let [roll, pitch, yaw] =
+            [(0, roll), (1, pitch), (2, yaw)].map(|law| TurningAxis::new(configuration, design, law));
         let tilting = |axes: [TurningAxis; 2]| horizontal(configuration, design, axes, &noise);
         let [north, east] = tilting([roll, pitch])?;
         let unaided = roll

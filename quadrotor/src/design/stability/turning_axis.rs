@@ -4,7 +4,7 @@ use lmpc::ModelIncrement;
 
 use crate::control::attitude_reference::SMOOTHING_S;
 use crate::design::attitude_design::AXIS_STATES;
-use crate::design::estimator_design::Axis;
+use crate::design::axis_predictor::AxisPredictor;
 use crate::design::stability::linear_law::{ChannelSample, LinearLaw};
 use crate::{CascadeDesign, Configuration};
 
@@ -18,10 +18,14 @@ pub(crate) struct TurningAxis {
     /// Inertia that the controller believes in, as a multiple of the true one.
     believed: f64,
     sample_time_s: f64,
+    /// The torque is known to act together with its rate of change times this, s.
+    lead_s: f64,
     /// Share of a deviation of the rotors' speed that is left after a sample time.
     kept: f64,
     output_feedback: bool,
-    estimator: Axis,
+    estimator: AxisPredictor,
+    /// Whether a change of the unexplained acceleration is surely one: noise hides small ones.
+    is_sure: bool,
 }
 
 /// State of a [`TurningAxis`]: small deviations from hover.
@@ -42,18 +46,20 @@ pub(crate) struct Turning {
     reference_acceleration: f64,
     /// Angle, rate and unexplained acceleration.
     pub(crate) estimate: [f64; 3],
+    /// That acceleration at the last sample.
+    disturbance: f64,
 }
 
 impl Turning {
     /// Number of values.
-    pub(crate) const SIZE: usize = 13;
+    pub(crate) const SIZE: usize = 14;
     /// Places of the angle and of the command among them.
     pub(crate) const ANGLE: usize = 0;
     pub(crate) const COMMAND: usize = 3;
 
     pub(crate) fn from_values(values: &[f64; Self::SIZE]) -> Self {
         let [angle, rate, acceleration, command, d0, d1, d2, feedback, ..] = *values;
-        let [.., reference_rate, reference_acceleration, e0, e1, e2] = *values;
+        let [.., reference_rate, reference_acceleration, e0, e1, e2, disturbance] = *values;
         Self {
             angle,
             rate,
@@ -64,6 +70,7 @@ impl Turning {
             reference_rate,
             reference_acceleration,
             estimate: [e0, e1, e2],
+            disturbance,
         }
     }
 
@@ -83,16 +90,17 @@ impl Turning {
             e0,
             e1,
             e2,
+            self.disturbance,
         ]
     }
 }
 
 impl TurningAxis {
-    /// Under this law.
+    /// Of roll, pitch or yaw, 0 to 2, under this law.
     pub(crate) fn new(
         configuration: &Configuration,
         design: &CascadeDesign,
-        law: LinearLaw<AXIS_STATES>,
+        (axis, law): (usize, LinearLaw<AXIS_STATES>),
     ) -> Self {
         let sample_time_s = configuration.controllers.attitude.sample_time_s();
         Self {
@@ -101,10 +109,17 @@ impl TurningAxis {
             is_incremental: design.attitude.is_incremental(),
             believed: configuration.controllers.mass_factor,
             sample_time_s,
+            lead_s: 0.0,
             kept: design.thrust_lag.kept(),
             output_feedback: configuration.sensors.output_feedback,
-            estimator: design.estimator.rotation,
+            estimator: design.estimator.rotation[axis],
+            is_sure: design.estimator.unsure_rad_s2[axis] == 0.0,
         }
+    }
+
+    /// The same axis with a torque that acts together with its rate of change times a lead, s.
+    pub(crate) fn leading(&self, lead_s: f64) -> Self {
+        Self { lead_s, ..*self }
     }
 
     /// The same axis without the torque that its reference needs: what is left when torques saturate.
@@ -148,7 +163,10 @@ impl TurningAxis {
         state.feedback = self.law.feedback(&ChannelSample {
             increment: match &self.motion {
                 Some(motion) => {
-                    motion.that_led_to(&deviation.into(), &[state.feedback + state.estimate[2]].into()).into()
+                    let driving = [state.feedback + state.estimate[2]];
+                    let mut increment = motion.that_led_to(&deviation.into(), &driving.into());
+                    increment[2] += if self.is_sure { state.estimate[2] - state.disturbance } else { 0.0 };
+                    increment.into()
                 }
                 None => core::array::from_fn(|place| deviation[place] - state.deviation[place]),
             },
@@ -157,12 +175,14 @@ impl TurningAxis {
             disturbance: state.estimate[2],
         });
         state.deviation = deviation;
+        state.disturbance = state.estimate[2];
         // J_believed u makes more, or less, of the true inertia.
         state.command = self.believed * (state.feedback + ahead);
 
         let after = state.command + (state.acceleration - state.command) * self.kept;
-        let mean = (state.acceleration + after) / 2.0 / self.believed;
-        let next = self.estimator.predict(&state.estimate.into(), &[mean].into(), &[measured[0]].into());
+        let change_1_s = (after - state.acceleration) / self.sample_time_s;
+        let mean = ((state.acceleration + after) / 2.0 + self.lead_s * change_1_s) / self.believed;
+        let next = self.estimator.predict(&state.estimate, mean, measured);
         state.estimate = next.into();
     }
 }

@@ -27,7 +27,11 @@ impl TurningLoop {
         lead_s: f64,
     ) -> Result<Self, DesignError> {
         let sample_time_s = configuration.controllers.attitude.sample_time_s();
-        Ok(Self { axis, motion: rotation(configuration, lead_s, sample_time_s)?, sample_time_s })
+        Ok(Self {
+            axis: axis.leading(lead_s),
+            motion: rotation(configuration, lead_s, sample_time_s)?,
+            sample_time_s,
+        })
     }
 }
 
