@@ -4,8 +4,8 @@
 //! cargo run -p paper --example families -- --only upright,small --seeds 60 --csv target/tracks
 //! ```
 //!
-//! References are raw. The figures of a flight are those of its family: how far off its reference the vehicle was over the last 20 s (RMS), how
-//! far beyond its goal and beside the straight way to it, when it settled, and how far tilt and speed left their limits.
+//! References are raw. The figures of a flight are those of its family: how far off its reference the vehicle was over the last 20 s
+//! (RMS), how far beyond its goal and beside the straight way to it, when it settled, and how far tilt and speed left their limits.
 
 use std::error::Error;
 use std::f64::consts::TAU;

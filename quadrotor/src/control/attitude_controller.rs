@@ -247,8 +247,8 @@ impl AttitudeController {
         (joined(&lean.input, &turn.input), activity(&lean, &turn))
     }
 
-    /// The motion since the last sample: by the model, if there is one, else as it was measured. A torque that begins to disturb the vehicle is
-    /// a jump of the acceleration, which no model leads to.
+    /// The motion since the last sample: by the model, if there is one, else as it was measured. A torque that begins to disturb the
+    /// vehicle is a jump of the acceleration, which no model leads to.
     fn increment(
         &self,
         design: &CascadeDesign,

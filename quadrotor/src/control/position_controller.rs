@@ -165,9 +165,9 @@ impl PositionController {
         self.controller.turn_feedback(|_| applied - reference.thrust);
     }
 
-    /// The increment of a sample that limits go by, and what beside it only the feedback answers to. Noise looks like a force that comes and
-    /// goes: a plan that took it to last would keep off limits that are not near. And a torque that has begun to turn the body, `thrown` m/s⁴,
-    /// is a jump of the snap, which no model leads to: a plan would take it to go on.
+    /// The increment of a sample that limits go by, and what beside it only the feedback answers to. Noise looks like a force that comes
+    /// and goes: a plan that took it to last would keep off limits that are not near. And a torque that has begun to turn the body,
+    /// `thrown` m/s⁴, is a jump of the snap, which no model leads to: a plan would take it to go on.
     fn increments(
         &mut self,
         design: &CascadeDesign,

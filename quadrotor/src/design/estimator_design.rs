@@ -19,8 +19,8 @@ const BESIDE_POSITIONS: Missed = Missed { acceleration: 0.3, wandering: 0.3, dri
 /// Acceleration that is missed beside a measured velocity, m/s²: a model that is trusted more lags behind while the vehicle is not what it
 /// is taken for.
 const BESIDE_VELOCITY_M_S2: f64 = 1.0;
-/// What the model of rotation misses where angles alone are read: a torque about roll and pitch is found within 0.07 s. Faster, a milliradian
-/// of noise would pass for torques that shake the vehicle.
+/// What the model of rotation misses where angles alone are read: a torque about roll and pitch is found within 0.07 s. Faster, a
+/// milliradian of noise would pass for torques that shake the vehicle.
 const BESIDE_LEAN: Missed = Missed { acceleration: 3.0, wandering: 10.0, drift: 0.0 };
 /// The same beside measured body rates: a torque is found within three samples.
 const BESIDE_LEAN_RATES: Missed = Missed { wandering: 30.0, ..BESIDE_LEAN };

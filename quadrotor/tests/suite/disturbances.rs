@@ -75,8 +75,8 @@ fn turbulence_n(weight_n: f64, share: f64, time_s: f64) -> Vector3<f64> {
     })
 }
 
-/// Where turbulence pushes a vehicle to and fro, thrust answers it, and acceleration goes with both: a mass was learned of it that was wrong by up
-/// to the double, and the vehicle was lost by metres.
+/// Where turbulence pushes a vehicle to and fro, thrust answers it, and acceleration goes with both: a mass was learned of it that was
+/// wrong by up to the double, and the vehicle was lost by metres.
 #[test]
 fn turbulence_is_no_mass() {
     for (preset, size_m, rate_rad_s) in [

@@ -276,7 +276,8 @@ impl MassAndDrag {
         self.watch_for_an_end(&rows[2], terms, interval_s);
         let unexplained_m_s2 = self.innovation(&rows, terms);
         let change_m_s2 = unexplained_m_s2 + self.change_of_force_m_s2(terms);
-        // The estimate follows a force that swings within seconds, but for its delay; a drag that is still to be learned swings with the speed.
+        // The estimate follows a force that swings within seconds, but for its delay; a drag that is still to be learned swings with the
+        // speed.
         let with_speed_m_s2 =
             DRAG_DEVIATIONS * DRAG_DEVIATION_1_S * self.excitation.change_of_speed_m_s(terms).norm();
         let swing_m_s2 = (change_m_s2.xy().norm() - with_speed_m_s2) / GUST_SWINGS;
@@ -357,8 +358,8 @@ impl MassAndDrag {
         (GUST_SWINGS * self.gusts_m_s2).max(FIT_SWINGS * exceeding_m_s2)
     }
 
-    /// Thrust per mass, m/s², speed along it, m/s, and specific force along it, m/s², but for the drag that is believed in and for level forces, which
-    /// lean into it; FRD, of a filter as far as it is filled.
+    /// Thrust per mass, m/s², speed along it, m/s, and specific force along it, m/s², but for the drag that is believed in and for level
+    /// forces, which lean into it; FRD, of a filter as far as it is filled.
     fn along_thrust(&self, configuration: &Configuration, terms: &Terms) -> Vector3<f64> {
         let velocity_m_s = terms.velocity_m_s.row(2).transpose();
         let drag_m_s2 = velocity_m_s.dot(&configuration.drag_1_s());
@@ -367,8 +368,8 @@ impl MassAndDrag {
         Vector3::new(terms.thrust_m_s2, velocity_m_s.sum(), force_m_s2) / terms.filled
     }
 
-    /// Fades gusts to the share that is `kept`, and takes for one what is not explained of the force across the thrust, as far as it is not a drag that is still to be learned, and a
-    /// swing of that force. What a flight begins with is no gust.
+    /// Fades gusts to the share that is `kept`, and takes for one what is not explained of the force across the thrust, as far as it is
+    /// not a drag that is still to be learned, and a swing of that force. What a flight begins with is no gust.
     fn watch_gusts(
         &mut self,
         rows: &[Unknowns; 3],
@@ -415,9 +416,10 @@ impl MassAndDrag {
     }
 }
 
-/// Deviation of a filtered equation under the white noise of the sensors, m/s², and what the model misses. Of that a filter of velocities has
-/// taken in as much as of all other terms: the first equations of a flight are small, and tell as much as the later ones. One of positions
-/// begins with an estimated velocity, the error of which it has whole from the first equation on. The sensors are sampled each `interval_s`.
+/// Deviation of a filtered equation under the white noise of the sensors, m/s², and what the model misses. Of that a filter of velocities
+/// has taken in as much as of all other terms: the first equations of a flight are small, and tell as much as the later ones. One of
+/// positions begins with an estimated velocity, the error of which it has whole from the first equation on. The sensors are sampled each
+/// `interval_s`.
 fn noise_m_s2(sensors: &Sensors, filled: f64, interval_s: f64) -> f64 {
     let (sensed_m_s2, missed_m_s2) = if sensors.output_feedback {
         (sensors.position_noise_m * libm::sqrt(interval_s) * noise_of_positions(), MODEL_NOISE_M_S2)
@@ -467,8 +469,8 @@ fn flies(configuration: &Configuration, sample: &FlightSample<'_>, thrust_m_s2: 
     is_clear && thrust_m_s2 > LEAST_THRUST_SHARE * GRAVITY_M_S2
 }
 
-/// Whether a rotor is commanded to the upper end of its range, where it may lack the power to do as it is told. As slowly as it can turn, it
-/// does.
+/// Whether a rotor is commanded to the upper end of its range, where it may lack the power to do as it is told. As slowly as it can turn,
+/// it does.
 fn is_saturated(configuration: &Configuration, sample: &FlightSample<'_>) -> bool {
     let airframe = &configuration.airframe;
     let (slowest, fastest) = (airframe.rotor_speed_min_rad_s, airframe.rotor_speed_max_rad_s);

@@ -18,11 +18,12 @@ const QUICKNESS: f64 = 3.0;
 /// A variance of which so little is left follows from others.
 const DEPENDENT: f64 = 1e-6;
 
-/// The plane f = α − μ t − κ w through the specific force f along the thrust, the thrust t per mass and the speed w along it of the last seconds, by
-/// least squares.
+/// The plane f = α − μ t − κ w through the specific force f along the thrust, the thrust t per mass and the speed w along it of the last
+/// seconds, by least squares.
 ///
-/// Whatever the mass and the drag are, and whatever steady force there is beside them, such a plane goes through all of them. What does not lie in
-/// it is another force that changes. The controllers answer that force with thrust, so that it passes for an error of the mass.
+/// Whatever the mass and the drag are, and whatever steady force there is beside them, such a plane goes through all of them. What does
+/// not lie in it is another force that changes. The controllers answer that force with thrust, so that it passes for an error of the
+/// mass.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ThrustFit {
     /// Averages of t, w and f.
@@ -74,8 +75,8 @@ impl ThrustFit {
         self.begin_anew();
     }
 
-    /// Whether what has been seen may as well be a force that changes as another mass. Either looks like a plane for a while; a mass does so
-    /// exactly, and from the first on.
+    /// Whether what has been seen may as well be a force that changes as another mass. Either looks like a plane for a while; a mass does
+    /// so exactly, and from the first on.
     pub(crate) fn is_in_doubt(&self) -> bool {
         match self.begun {
             Begun::Flying => self.is_doubted,
@@ -84,8 +85,8 @@ impl ThrustFit {
         }
     }
 
-    /// Takes a share of the present, t, w and f, into the averages, under noise of the sensors, m/s²; all that has been seen counts alike until
-    /// they are filled. A plane through little tells only that forces change, not that they do not.
+    /// Takes a share of the present, t, w and f, into the averages, under noise of the sensors, m/s²; all that has been seen counts alike
+    /// until they are filled. A plane through little tells only that forces change, not that they do not.
     pub(crate) fn see(&mut self, present: &Vector3<f64>, share_of_all: f64, noise_m_s2: f64) {
         self.filled += (1.0 - self.filled) * share_of_all;
         let share = share_of_all / self.filled;
