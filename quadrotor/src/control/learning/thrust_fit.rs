@@ -125,7 +125,8 @@ impl ThrustFit {
             // One that follows from those before it explains no more than they do.
             if variance > DEPENDENT * self.covariance[(pivot, pivot)] {
                 let column = left.column(pivot).into_owned();
-                left -= column * (column / variance).transpose();
+                // Compiled, the quotient may be calculated beforehand: not by zero.
+                left -= column * (column / variance.max(f64::MIN_POSITIVE)).transpose();
             }
         }
         libm::sqrt(left[(2, 2)].max(0.0))
