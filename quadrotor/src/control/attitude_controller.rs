@@ -13,6 +13,7 @@ use crate::control::spin::Spin;
 use crate::design::attitude_design::{AXIS_STATES, AttitudeDesign};
 use crate::design::attitude_limits::RotorRoom;
 use crate::design::capacities::{LEAN_FEW, LEAN_MANY, TURN_FEW, TURN_MANY};
+use crate::design::estimator_design::beyond;
 use crate::design::loop_design::LoopDesign;
 use crate::{CascadeDesign, Configuration};
 
@@ -328,11 +329,6 @@ impl AttitudeController {
 /// leans to catch up with its reference.
 fn leaning_and_turning(in_body: &UnitQuaternion<f64>, motion: &Vector3<f64>) -> Vector3<f64> {
     in_body * Vector3::new(motion.x, motion.y, 0.0) + Vector3::z() * motion.z
-}
-
-/// By how much a change is larger than what nobody can be sure of.
-pub(crate) fn beyond(change: f64, unsure: f64) -> f64 {
-    change - change.clamp(-unsure, unsure)
 }
 
 /// A disturbance, rad/s², whose part about yaw is no more than a share of what the rotors can do about it, `turn_rad_s2`.

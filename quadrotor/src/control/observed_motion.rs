@@ -134,7 +134,7 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
         answer: impl Fn(&SVector<f64, N>) -> SVector<f64, P>,
         rate: &SVector<f64, P>,
     ) -> Option<SVector<f64, P>> {
-        let model = model.filter(|_| self.deviation.is_none())?;
+        let model = model.filter(|_| !self.has_begun())?;
         let mut moving = SVector::zeros();
         for channel in 0..P {
             moving[N / P * channel + 1] = rate[channel];

@@ -7,7 +7,6 @@ use nalgebra::{SVector, Vector2};
 use serde::{Deserialize, Serialize};
 
 use crate::control::activity::ControllerActivity;
-use crate::control::attitude_controller::beyond;
 use crate::control::governor::{Governor, integral_rate};
 use crate::control::largest_lean::LargestLean;
 use crate::control::observed_motion::{MotionSample, ObservedMotion};
@@ -15,6 +14,7 @@ use crate::control::thrown::Thrown;
 use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::braking_way::BrakingWay;
 use crate::design::capacities::{POSITION_FEW, POSITION_MANY};
+use crate::design::estimator_design::beyond;
 use crate::design::position_limits::{
     AXIS_STATES, Asked, POSITION_SIGNALS, POSITION_STATES, closing_share, horizon_m, in_sight,
     planned_horizon_m, position_bounds,

@@ -24,8 +24,8 @@ const BESIDE_VELOCITY_M_S2: f64 = 1.0;
 const BESIDE_LEAN: Missed = Missed { acceleration: 3.0, wandering: 10.0, drift: 0.0 };
 /// The same beside measured body rates: a torque is found within three samples.
 const BESIDE_LEAN_RATES: Missed = Missed { wandering: 30.0, ..BESIDE_LEAN };
-/// The same about yaw, with and without its rate, within 0.14 s: there is less torque about yaw, which that noise would pass for more than,
-/// and what rotors do that spin up is known less well than what their thrust does.
+/// The same about yaw, with and without its rate, within 0.14 s: rotors make little torque about yaw, and that noise would pass for more than
+/// they can make. What they do while they spin up is known less well than what their thrust does, too.
 const BESIDE_HEADING: Missed = Missed { wandering: 3.0, ..BESIDE_LEAN };
 /// So many deviations of its noise an unexplained angular acceleration must change by to have changed.
 const SURE_DEVIATIONS: f64 = 8.0;
@@ -53,9 +53,8 @@ impl EstimatorDesign {
         let sensors = &configuration.sensors;
         let sample_time_s = configuration.controllers.attitude.sample_time_s();
         let translation = translation(sensors, sample_time_s)?;
-        let beside_lean = if sensors.output_feedback { BESIDE_LEAN } else { BESIDE_LEAN_RATES };
-        let lean = rotation(sensors, sample_time_s, &beside_lean)?;
-        let turn = rotation(sensors, sample_time_s, &BESIDE_HEADING)?;
+        let lean = rotation(sensors, sample_time_s, [&BESIDE_LEAN, &BESIDE_LEAN_RATES])?;
+        let turn = rotation(sensors, sample_time_s, [&BESIDE_HEADING; 2])?;
         let rotation = [lean, lean, turn];
         let estimates = sensors.estimates_motion();
         let turning = [sensors.attitude_noise_rad, sensors.body_rate_noise_rad_s];
@@ -68,6 +67,11 @@ impl EstimatorDesign {
             sample_time_s,
         })
     }
+}
+
+/// By how much a change is larger than one that may be noise.
+pub(crate) fn beyond(change: f64, unsure: f64) -> f64 {
+    change - change.clamp(-unsure, unsure)
 }
 
 fn translation(sensors: &Sensors, sample_time_s: f64) -> Result<AxisPredictor, DesignError> {
@@ -84,13 +88,18 @@ fn translation(sensors: &Sensors, sample_time_s: f64) -> Result<AxisPredictor, D
     AxisPredictor::by_motion(sample_time_s, [position_m, velocity_m_s], &missed)
 }
 
-fn rotation(sensors: &Sensors, sample_time_s: f64, missed: &Missed) -> Result<AxisPredictor, DesignError> {
+/// With what its model misses beside angles alone, and beside angles and their rates.
+fn rotation(
+    sensors: &Sensors,
+    sample_time_s: f64,
+    [beside_angle, beside_rate]: [&Missed; 2],
+) -> Result<AxisPredictor, DesignError> {
     let angle_rad = sensors.attitude_noise_rad.max(SMALLEST_NOISE.1);
     if sensors.output_feedback {
-        return AxisPredictor::by_place(sample_time_s, angle_rad, missed);
+        return AxisPredictor::by_place(sample_time_s, angle_rad, beside_angle);
     }
     let rate_rad_s = sensors.body_rate_noise_rad_s.max(SMALLEST_RATE_NOISE.1);
-    AxisPredictor::by_motion(sample_time_s, [angle_rad, rate_rad_s], missed)
+    AxisPredictor::by_motion(sample_time_s, [angle_rad, rate_rad_s], beside_rate)
 }
 
 #[cfg(test)]

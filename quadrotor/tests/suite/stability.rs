@@ -172,7 +172,7 @@ fn a_change_that_would_lose_the_vehicle_leaves_the_flight_alone() {
     let mut changed = configuration;
     changed.airframe.rotor_time_constant_s = 0.06;
     match flight.reconfigure(&changed) {
-        Err(ConfigurationError::Unstable { cause: Some(cause), .. }) => {
+        Err(ConfigurationError::Unstable { name: "north", cause: Some(cause), .. }) => {
             assert_eq!(
                 (cause.name, cause.value.value, cause.stable.value),
                 ("airframe.rotor.time_constant", 0.06, 0.02)

@@ -205,6 +205,8 @@ fn a_value_that_would_lose_the_vehicle_is_refused_in_flight() {
     // Accepted, and told why it is doubtful.
     answers(&mut bench, set_parameter("SENS_RATE_NOISE", 0.9));
     let text = bench.texts().concat();
+    // The paper's models swing, and say so again where the noise is another.
+    assert!(text.starts_with("SENS_RATE_NOISE: the north loop swings"), "{text}");
     assert!(text.contains("SENS_RATE_NOISE: measurement noise"), "{text}");
     bench.heard.clear();
     answers(&mut bench, set_parameter("LIM_SPEED_HORIZ", 5.0));

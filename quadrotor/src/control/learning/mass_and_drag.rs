@@ -81,6 +81,15 @@ pub(crate) struct FlightSample<'a> {
     pub(crate) averaging: &'a SampledAveraging,
 }
 
+/// Of an equation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Noise {
+    /// Its deviation by sensors and by what the model misses, m/s².
+    all_m_s2: f64,
+    /// What the thrust does not explain of the force along it, m/s².
+    unexplained_m_s2: f64,
+}
+
 /// Learns mass and drag, with the forces beside them.
 ///
 /// What can be told apart, and what cannot: in hover the weight and a steady vertical force are the same, and so are drag in
@@ -247,19 +256,23 @@ impl MassAndDrag {
             return false;
         }
         let noise_m_s2 = noise_m_s2(&configuration.sensors, terms.filled, sampled_s);
-        if terms.filled > FITTED {
+        let unexplained_m_s2 = if terms.filled > FITTED {
+            let along = self.along_thrust(configuration, &terms);
             let sensed_m2_s4 = noise_m_s2 * noise_m_s2 - MODEL_NOISE_M_S2 * MODEL_NOISE_M_S2;
-            let noise_m_s2 = FIT_DEVIATIONS * libm::sqrt(sensed_m2_s4.max(0.0));
-            self.fit.see(&self.along_thrust(configuration, &terms), averaging.steady_motion, noise_m_s2);
-        }
+            let sensed_m_s2 = libm::sqrt(sensed_m2_s4.max(0.0));
+            self.fit.see(&along, averaging.steady_motion, FIT_DEVIATIONS * sensed_m_s2)
+        } else {
+            self.fit.deviation_m_s2()
+        };
+        let noise = Noise { all_m_s2: noise_m_s2, unexplained_m_s2 };
         // Also of what is not learned from: where the thrust was before it changed shows the mass as soon as it has changed.
-        let (along_m_s2, drag_1_s) = (self.noise_along_m_s2(noise_m_s2), self.drag_1_s());
+        let (along_m_s2, drag_1_s) = (self.noise_along_m_s2(&noise), self.drag_1_s());
         let mut shown = self.excitation.observe(&terms, averaging.steady_motion, (along_m_s2, &drag_1_s));
         shown.mass &= !self.fit.is_in_doubt();
         let moves = terms.velocity_m_s.norm() > AT_REST_M_S * terms.filled;
         let learns = moves && !is_saturated(configuration, sample);
         if learns {
-            self.learn(configuration, &terms, &shown, (noise_m_s2, interval_s, averaging));
+            self.learn(configuration, &terms, &shown, (&noise, interval_s, averaging));
         }
         learns
     }
@@ -269,8 +282,9 @@ impl MassAndDrag {
         configuration: &Configuration,
         terms: &Terms,
         shown: &Shown,
-        (noise_m_s2, interval_s, averaging): (f64, f64, &Averaging),
+        (noise, interval_s, averaging): (&Noise, f64, &Averaging),
     ) {
+        let noise_m_s2 = noise.all_m_s2;
         let prior = &prior(configuration);
         let rows = [0, 1, 2].map(|axis| row(terms, axis));
         self.watch_for_an_end(&rows[2], terms, interval_s);
@@ -313,7 +327,7 @@ impl MassAndDrag {
             // Loads do not come and go within seconds: what does is a force.
             self.gusts_m_s2 = self.gusts_m_s2.max(along_m_s2 / GUST_SWINGS).min(MOST_FORCE_M_S2);
         }
-        let along_m_s2 = self.noise_along_m_s2(noise_m_s2);
+        let along_m_s2 = self.noise_along_m_s2(noise);
         let learned = learned_from(shown);
         self.estimate.forget(prior, &averaging.learned_kept);
         // Filtered equations repeat one another for as long as the filter remembers.
@@ -346,10 +360,8 @@ impl MassAndDrag {
     }
 
     /// Deviation of the equation along the thrust, m/s²: a gust across the thrust comes with one along it, which would pass for mass.
-    fn noise_along_m_s2(&self, noise_m_s2: f64) -> f64 {
-        let fit = &self.fit;
-        let unexplained_m_s2 = fit.deviation_m_s2().max(fit.present_deviation_m_s2());
-        length(noise_m_s2, self.swing_along_m_s2(unexplained_m_s2, noise_m_s2))
+    fn noise_along_m_s2(&self, noise: &Noise) -> f64 {
+        length(noise.all_m_s2, self.swing_along_m_s2(noise.unexplained_m_s2, noise.all_m_s2))
     }
 
     /// How much forces from outside change along the thrust, m/s²: by those across it, and by what the thrust does not explain.

@@ -87,7 +87,9 @@ impl ThrustFit {
 
     /// Takes a share of the present, t, w and f, into the averages, under noise of the sensors, m/s²; all that has been seen counts alike
     /// until they are filled. A plane through little tells only that forces change, not that they do not.
-    pub(crate) fn see(&mut self, present: &Vector3<f64>, share_of_all: f64, noise_m_s2: f64) {
+    ///
+    /// Returns how far the forces deviate from the plane, m/s²: smoothed, or at present, where a jump counts at once, if that is more.
+    pub(crate) fn see(&mut self, present: &Vector3<f64>, share_of_all: f64, noise_m_s2: f64) -> f64 {
         self.filled += (1.0 - self.filled) * share_of_all;
         let share = share_of_all / self.filled;
         let off = present - self.mean;
@@ -97,14 +99,14 @@ impl ThrustFit {
         if self.filled > FILLED {
             self.begun = Begun::LongAgo;
         }
-        let present_m_s2 = self.present_deviation_m_s2();
-        let force_m_s2 = libm::sqrt(self.covariance[(2, 2)]);
+        let [force_m_s2, by_thrust_m_s2, present_m_s2] = self.deviations_m_s2();
         // Little is explained by anything: here by the thrust alone.
-        self.is_doubted |= self.left_m_s2(1) > LEAST_M_S2 + noise_m_s2 + EXACTNESS * force_m_s2;
+        self.is_doubted |= by_thrust_m_s2 > LEAST_M_S2 + noise_m_s2 + EXACTNESS * force_m_s2;
         let change_m_s2 = present_m_s2 - self.deviation_m_s2;
         if change_m_s2 > 0.0 || self.filled > FILLED {
             self.deviation_m_s2 += change_m_s2 * (QUICKNESS * share_of_all).min(1.0);
         }
+        self.deviation_m_s2.max(present_m_s2)
     }
 
     /// Deviation of the forces from the plane, smoothed: what has just jumped hardly counts, m/s².
@@ -112,15 +114,11 @@ impl ThrustFit {
         self.deviation_m_s2
     }
 
-    /// The same at present, where a jump counts at once, m/s²: √(c_ff − c_xfᵀ C_xx⁻¹ c_xf) with x = (t, w).
-    pub(crate) fn present_deviation_m_s2(&self) -> f64 {
-        self.left_m_s2(2)
-    }
-
-    /// What is left of the deviation of f when t alone, or t and then w, are eliminated.
-    fn left_m_s2(&self, explaining: usize) -> f64 {
+    /// Deviation of f, and what is left of it when t, and then w, are eliminated: √(c_ff − c_xfᵀ C_xx⁻¹ c_xf) with x = (t, w).
+    fn deviations_m_s2(&self) -> [f64; 3] {
         let mut left = self.covariance;
-        for pivot in 0..explaining {
+        let mut squares = [left[(2, 2)]; 3];
+        for pivot in 0..2 {
             let variance = left[(pivot, pivot)];
             // One that follows from those before it explains no more than they do.
             if variance > DEPENDENT * self.covariance[(pivot, pivot)] {
@@ -128,8 +126,9 @@ impl ThrustFit {
                 // Compiled, the quotient may be calculated beforehand: not by zero.
                 left -= column * (column / variance.max(f64::MIN_POSITIVE)).transpose();
             }
+            squares[pivot + 1] = left[(2, 2)].max(0.0);
         }
-        libm::sqrt(left[(2, 2)].max(0.0))
+        squares.map(libm::sqrt)
     }
 
     /// Whether a flight can have had it: saved states may come from anywhere.

@@ -52,7 +52,7 @@ const INERTIA_TOLERANCE: f64 = 0.5;
 /// configuration.controllers.model = PredictionModel::Paper;
 /// configuration.airframe.rotor_time_constant_s = 0.06;
 /// let refused = StabilityReport::new(&configuration);
-/// assert!(matches!(refused, Err(ConfigurationError::Unstable { .. })));
+/// assert!(matches!(refused, Err(ConfigurationError::Unstable { name: "north", .. })));
 /// # Ok::<(), ConfigurationError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
