@@ -125,9 +125,9 @@ class Client:
 
 
 def patiently(*arguments) -> tuple:
-    """Arguments of a vehicle that waits for set-points as long as other work on the machine may keep a client from sending. PX4's
-    offboard mode is left after a second, of which a fast vehicle has several in each of the client's; ArduPilot's guided mode stays."""
-    return arguments if "ardupilot" in arguments else ("--set", "COM_OF_LOSS_T=30", *arguments)
+    """Arguments of a vehicle that waits for set-points and sticks as long as other work on the machine may keep a client from sending.
+    PX4's modes are left after a second, of which a fast vehicle has several in each of the client's; ArduPilot's guided mode stays."""
+    return arguments if "ardupilot" in arguments else ("--set", "COM_OF_LOSS_T=30", "--set", "COM_RC_LOSS_T=30", *arguments)
 
 
 def near(goal, within: float = 0.1, slow: float = 0.1):

@@ -4,7 +4,7 @@ import math
 import subprocess
 
 import pytest
-from client import PX4_POSITION, near
+from client import PX4_POSITION, near, patiently
 from mavsdk.plugins.action import Action
 from mavsdk.plugins.action.action import ActionError
 from mavsdk.plugins.geofence import Circle, FenceType, Geofence, GeofenceData, Point, Polygon
@@ -91,7 +91,7 @@ def armed(beat):
 
 def test_pymavlink_flies_against_a_fence_and_the_record_is_the_same_flight(program, start, connect, tmp_path):
     record = tmp_path / "flight.rec"
-    vehicle = start("--speed", "10", "--record", record)
+    vehicle = start(*patiently("--speed", "10", "--record", record))
     client = connect(vehicle)
     assert upload(client, FENCE, [(INSIDE, 2, *SQUARE[0]), (INSIDE, 2, *SQUARE[1])]) == mavlink.MAV_MISSION_INVALID_PARAM1
     assert upload(client, FENCE, [(INSIDE, 4, *corner) for corner in SQUARE]) == mavlink.MAV_MISSION_ACCEPTED
