@@ -72,8 +72,9 @@ pub struct AttitudeController {
     deviation: Deviation,
     /// Integral action of the last step, rad/s².
     integral_rad_s2: Vector3<f64>,
-    /// What the rotors did not explain of the angular acceleration at the last sample, FRD, rad/s²; `None` before the first one.
-    disturbance_rad_s2: Option<Vector3<f64>>,
+    /// What the rotors did not explain of the angular acceleration, FRD, rad/s², as far as its changes have been answered; `None` before
+    /// the first sample.
+    answered_rad_s2: Option<Vector3<f64>>,
 }
 
 /// Angle, rate and angular acceleration about roll, pitch and yaw less those of the reference.
@@ -168,7 +169,7 @@ impl AttitudeController {
             attitude: *attitude,
             deviation: Deviation::default(),
             integral_rad_s2: Vector3::zeros(),
-            disturbance_rad_s2: None,
+            answered_rad_s2: None,
         }
     }
 
@@ -221,7 +222,6 @@ impl AttitudeController {
             },
             disturbance: disturbance_rad_s2,
         };
-        self.disturbance_rad_s2 = Some(disturbance_rad_s2);
         let room = RotorRoom {
             mixer: &design.mixer,
             thrust_n,
@@ -249,16 +249,18 @@ impl AttitudeController {
     }
 
     /// The motion since the last sample: by the model, if there is one, else as it was measured. A torque that begins to disturb the
-    /// vehicle is a jump of the acceleration, which no model leads to.
+    /// vehicle is a jump of the acceleration, which no model leads to. Under noise the estimate grows to it over some samples, none of
+    /// whose steps need be sure: what counts is how far it has come from what was answered.
     fn increment(
-        &self,
+        &mut self,
         design: &CascadeDesign,
         deviation: &Deviation,
         disturbance_rad_s2: &Vector3<f64>,
     ) -> Deviation {
-        let Some(motion) = &design.attitude.motion else { return deviation.since(&self.deviation) };
-        let before = self.disturbance_rad_s2.unwrap_or(*disturbance_rad_s2);
+        let before = self.answered_rad_s2.unwrap_or(*disturbance_rad_s2);
         let jump = (disturbance_rad_s2 - before).zip_map(&design.estimator.unsure_rad_s2, beyond);
+        self.answered_rad_s2 = Some(before + jump);
+        let Some(motion) = &design.attitude.motion else { return deviation.since(&self.deviation) };
         let driving = joined(&self.lean.feedback(), &self.turn.feedback()) + disturbance_rad_s2;
         let axes =
             [0, 1, 2].map(|axis| motion.that_led_to(&deviation.states(axis), &Vector1::new(driving[axis])));
@@ -281,7 +283,7 @@ impl AttitudeController {
         self.lean.turn_feedback(|lean| lean * ratio);
         self.turn.turn_feedback(|turn| turn * ratio);
         self.integral_rad_s2 *= ratio;
-        self.disturbance_rad_s2 = self.disturbance_rad_s2.map(|disturbance| disturbance * ratio);
+        self.answered_rad_s2 = self.answered_rad_s2.map(|answered| answered * ratio);
     }
 
     /// Goes on under another law of the same torque. An incremental law has what its reference needs in its feedback, the

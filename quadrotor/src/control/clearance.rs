@@ -12,5 +12,5 @@ pub(crate) fn height_m(configuration: &Configuration, ground_z_m: f64, z_m: f64)
 
 /// Whether nothing touches the vehicle at this height above a ground plane, m, in any attitude.
 pub(crate) fn is_clear(airframe: &Airframe, height_m: Option<f64>) -> bool {
-    height_m.is_none_or(|height_m| height_m > airframe.arm_length_m * airframe.layout.reach() + CLEARANCE_M)
+    height_m.is_none_or(|height_m| height_m > airframe.reach_m() + CLEARANCE_M)
 }

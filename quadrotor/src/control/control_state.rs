@@ -438,7 +438,7 @@ impl ControlState {
         self.estimator.predict(configuration, design, &seen.measured, &self.command.speed_rad_s, times);
         let height_m = height_m(configuration, ground_z_m, seen.measured.position_m.z);
         if !is_clear(&configuration.airframe, height_m) {
-            self.estimator.stand();
+            self.estimator.stand_if_not_carried(configuration);
         }
     }
 }

@@ -1,4 +1,5 @@
-//! The stationary Kalman predictor (26) of the vehicle's motion, from position and attitude, or from a noisy velocity, too.
+//! The stationary Kalman predictor (26) of the vehicle's motion: from position and attitude, and from velocity and body rates where those
+//! are measured.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
@@ -10,6 +11,10 @@ use crate::finite::are_finite;
 use crate::{
     Airframe, CascadeDesign, Configuration, GRAVITY_M_S2, RigidBody, Sensors, Wrench, wrench_of_rotors,
 };
+
+/// Rotors that make less than this share of the weight do not carry the vehicle, even one that is believed to be half as heavy again as
+/// it is.
+const CARRYING_SHARE: f64 = 0.6;
 
 /// The estimate of the vehicle's motion at the next sample of the attitude controller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -96,9 +101,13 @@ impl Estimator {
         self.rotor_speed_rad_s
     }
 
-    /// On the ground, which answers every torque: what it does is none from outside, and none that is there in flight.
-    pub(crate) fn stand(&mut self) {
-        self.disturbance_rad_s2 = Vector3::zeros();
+    /// Forgets the torque that was found, close to the ground, if the rotors do not carry the vehicle: it stands there, and the ground,
+    /// which answers every torque, would pass for one.
+    pub(crate) fn stand_if_not_carried(&mut self, configuration: &Configuration) {
+        let thrust_n = wrench_of_rotors(&configuration.airframe, &self.rotor_speed_rad_s).thrust_n;
+        if thrust_n < CARRYING_SHARE * configuration.believed_mass_kg() * GRAVITY_M_S2 {
+            self.disturbance_rad_s2 = Vector3::zeros();
+        }
     }
 
     /// Goes on under another belief in mass, inertia and drag, for an unchanged vehicle: what thrust and drag are believed to accelerate

@@ -24,7 +24,7 @@ pub(crate) struct Observation {
     disturbance_lag_s: f64,
     /// Angular acceleration that the torques do not explain, FRD, rad/s².
     disturbance_rad_s2: Vector3<f64>,
-    /// By so much that changes under noise alone, rad/s².
+    /// By so much that may be off by noise alone, rad/s².
     unsure_rad_s2: Vector3<f64>,
     /// Speeds that the rotors have reached by their model, rad/s.
     pub(crate) rotor_speed_rad_s: [f64; 4],

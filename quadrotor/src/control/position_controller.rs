@@ -14,7 +14,6 @@ use crate::control::thrown::Thrown;
 use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::braking_way::BrakingWay;
 use crate::design::capacities::{POSITION_FEW, POSITION_MANY};
-use crate::design::estimator_design::beyond;
 use crate::design::position_limits::{
     AXIS_STATES, Asked, POSITION_SIGNALS, POSITION_STATES, closing_share, horizon_m, in_sight,
     planned_horizon_m, position_bounds,
@@ -110,7 +109,7 @@ impl PositionController {
             jump: by_axis([zero, zero, zero, seen_jerk_jump, seen_snap_jump, zero]),
         };
         let sample_time_s = configuration.controllers.position.sample_time_s();
-        let thrown = self.thrown.change_m_s4(&turning).map(|change| beyond(change, seen.unsure_m_s4));
+        let thrown = self.thrown.answer_m_s4(seen);
         let (lasting_increment, passing) =
             self.increments(design, &motion, (sample_time_s, seen.disturbance_lag_s), &thrown);
         let under_way =

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::attitude_loop::AttitudeLoop;
+use crate::design::estimator_design::beyond;
 use crate::design::position_limits::TurnUnderWay;
 
 /// How many times more jerk than what has thrown it lately made, a body is brought back from.
@@ -18,14 +19,19 @@ const BRAKED: f64 = 5.0;
 pub(crate) struct Thrown {
     /// Snap by what turns the body beside the rotors, at the last sample, m/s⁴.
     turning_m_s4: Vector2<f64>,
+    /// The same as far as its changes have been answered, m/s⁴.
+    answered_m_s4: Vector2<f64>,
     /// Sum of its changes, each of which fades, m/s⁴.
     thrown_m_s4: f64,
 }
 
 impl Thrown {
-    /// By how much what turns the body beside the rotors has changed since the last sample, m/s⁴.
-    pub(crate) fn change_m_s4(&self, turning_m_s4: &Vector2<f64>) -> Vector2<f64> {
-        turning_m_s4 - self.turning_m_s4
+    /// By how much more what turns the body beside the rotors has surely changed than was answered, which it then is, m/s⁴.
+    pub(crate) fn answer_m_s4(&mut self, seen: &HorizontalMotion) -> Vector2<f64> {
+        let change =
+            (seen.disturbance_m_s4 - self.answered_m_s4).map(|change| beyond(change, seen.unsure_m_s4));
+        self.answered_m_s4 += change;
+        change
     }
 
     /// What is under way at a sample, `turning_m_s4` of it by what turns the body beside the rotors: it is answered within the delay of the
@@ -40,7 +46,7 @@ impl Thrown {
         // Without a loop the attitude is taken for instantaneous.
         let delay_s = attitude.map_or(0.0, |attitude| attitude.delay_s());
         let kept = if delay_s > 0.0 { libm::exp(-sample_time_s / delay_s) } else { 0.0 };
-        self.thrown_m_s4 = self.thrown_m_s4 * kept + self.change_m_s4(turning_m_s4).norm();
+        self.thrown_m_s4 = self.thrown_m_s4 * kept + (turning_m_s4 - self.turning_m_s4).norm();
         self.turning_m_s4 = *turning_m_s4;
         let made_m_s4 = (seen.snap_m_s4 + turning_m_s4).norm();
         let asked_m_s4 = (seen.asked_snap_m_s4 + turning_m_s4).norm();

@@ -27,8 +27,8 @@ const BESIDE_LEAN_RATES: Missed = Missed { wandering: 30.0, ..BESIDE_LEAN };
 /// The same about yaw, with and without its rate, within 0.14 s: rotors make little torque about yaw, and that noise would pass for more than
 /// they can make. What they do while they spin up is known less well than what their thrust does, too.
 const BESIDE_HEADING: Missed = Missed { wandering: 3.0, ..BESIDE_LEAN };
-/// So many deviations of its noise an unexplained angular acceleration must change by to have changed.
-const SURE_DEVIATIONS: f64 = 8.0;
+/// So many deviations of its noise an unexplained angular acceleration must be away from what was answered last to have changed.
+const SURE_DEVIATIONS: f64 = 4.0;
 
 /// The predictors of one axis of translation and of rotation, at the attitude controller's sample time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +39,7 @@ pub(crate) struct EstimatorDesign {
     /// How far the predictor lags behind an acceleration that the model does not explain, s: sooner, noise does not tell one. Zero where
     /// velocities are measured exactly.
     pub(crate) disturbance_lag_s: f64,
-    /// By so much the unexplained angular acceleration changes under noise alone, FRD, rad/s².
+    /// By so much the unexplained angular acceleration may be off by noise alone, FRD, rad/s².
     pub(crate) unsure_rad_s2: Vector3<f64>,
     pub(crate) sample_time_s: f64,
 }
@@ -71,7 +71,8 @@ impl EstimatorDesign {
 
 /// By how much a change is larger than one that may be noise.
 pub(crate) fn beyond(change: f64, unsure: f64) -> f64 {
-    change - change.clamp(-unsure, unsure)
+    // Without panics: a state that tumbles out of the numbers makes bounds that are none.
+    change - change.max(-unsure).min(unsure)
 }
 
 fn translation(sensors: &Sensors, sample_time_s: f64) -> Result<AxisPredictor, DesignError> {
@@ -106,7 +107,7 @@ fn rotation(
 mod tests {
     use nalgebra::Vector3;
 
-    use super::EstimatorDesign;
+    use super::{EstimatorDesign, beyond};
     use crate::{Configuration, Sensors};
 
     /// A torque is found within three samples by body rates, within 0.07 s by angles alone, and later under noise, of which it must
@@ -123,7 +124,15 @@ mod tests {
         assert_eq!((exact.unsure_rad_s2, angles.unsure_rad_s2), (Vector3::zeros(), Vector3::zeros()));
         let noisy = Sensors { attitude_noise_rad: 0.01, body_rate_noise_rad_s: 0.1, ..Sensors::default() };
         let noisy = of(noisy);
-        assert!(lag_s(&noisy) > lag_s(&exact) && noisy.unsure_rad_s2.min() > 1.0, "{noisy:?}");
+        assert!(lag_s(&noisy) > lag_s(&exact) && noisy.unsure_rad_s2.min() > 0.5, "{noisy:?}");
+    }
+
+    #[test]
+    fn only_what_is_beyond_noise_counts() {
+        assert_eq!([3.0, 1.0, -3.0].map(|change| beyond(change, 2.0)), [1.0, 0.0, -1.0]);
+        assert_eq!(beyond(3.0, 0.0), 3.0);
+        // Out of the numbers, too, it does not panic.
+        assert_eq!(beyond(3.0, f64::NAN), 0.0);
     }
 
     /// After a step of an acceleration that the model does not explain, what is missing of its estimate adds up to the lag.

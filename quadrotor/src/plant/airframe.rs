@@ -125,6 +125,12 @@ impl Airframe {
         self.is_centred() && self.rotor_aerodynamics.is_static() && self.rotor_spin.inertia_kg_m2 == 0.0
     }
 
+    /// No rotor, and no foot below one, is farther from the centre of mass, m.
+    pub(crate) fn reach_m(&self) -> f64 {
+        let [x, y, _] = self.centre_of_gravity_m;
+        self.arm_length_m * self.layout.reach() + libm::hypot(x, y)
+    }
+
     /// Places of the rotors, FRD from the centre of mass, m.
     #[inline]
     pub(crate) fn rotor_places_m(&self) -> [Vector3<f64>; 4] {

@@ -6,7 +6,7 @@ use crate::plant::calmness::Calmness;
 use crate::plant::differentiation::real::{Real, Valued};
 use crate::plant::events::branches::{Branches, ByValue};
 use crate::plant::forces::Forces;
-use crate::plant::ground::{HoldingMargins, cannot_be_held, contact, reach_m};
+use crate::plant::ground::{HoldingMargins, cannot_be_held, contact};
 #[cfg(feature = "fleet")]
 use crate::plant::likeness::likeness;
 use crate::plant::mass_properties::MassProperties;
@@ -87,7 +87,7 @@ impl Plant {
             rotor_lag: RotorLag::new(airframe),
             rotor_map: RotorMap::new(airframe),
             is_plain: airframe.has_static_rotors() && !airframe.drags() && !airframe.battery.sag,
-            reach_m: reach_m(airframe),
+            reach_m: airframe.reach_m(),
             calmness: Calmness::new(airframe),
             #[cfg(feature = "fleet")]
             likeness: likeness(airframe, ground_plane),

@@ -26,7 +26,7 @@ const DEEPEST_START_M: f64 = 0.01;
 /// the centre of mass, so that a vehicle at rest on the ground is at its height, `ground_z_m`, but for the compliance.
 ///
 /// The friction is that of feet that slip: proportional to a slow slip, and zero at rest. [`HoldingMargins`] decide when
-/// static friction holds the vehicle instead. `reach_m` is [`reach_m`] of the airframe.
+/// static friction holds the vehicle instead. `reach_m` is [`Airframe::reach_m`].
 pub(crate) fn contact<T: Real>(
     airframe: &Airframe,
     body: &RigidBody<T>,
@@ -90,7 +90,7 @@ impl HoldingMargins {
         let nearest_m = airframe.arm_length_m * airframe.layout.nearest();
         let demand_n = pull.force_n.xy().norm() + libm::fabs(pull.torque_n_m.z) / nearest_m;
         Self {
-            slip_m_s: FRICTION_SLIP_M_S - slip_m_s(body, reach_m(airframe)),
+            slip_m_s: FRICTION_SLIP_M_S - slip_m_s(body, airframe.reach_m()),
             least_load_n: footings.iter().map(Footing::pressing_n).fold(f64::INFINITY, f64::min),
             grip_n: FRICTION_COEFFICIENT * load_n - demand_n,
         }
@@ -138,12 +138,6 @@ pub(crate) fn is_farther_than<T: Valued>(
     reach_m: f64,
 ) -> bool {
     body.position_m.z.value() - ground_z_m < -(reach_m + way_m)
-}
-
-/// No foot is farther from the centre of mass, m.
-pub(crate) fn reach_m(airframe: &Airframe) -> f64 {
-    let [x, y, _] = airframe.centre_of_gravity_m;
-    airframe.arm_length_m * airframe.layout.reach() + libm::hypot(x, y)
 }
 
 /// Feet in line with the rotors, FRD from the centre of mass, m.
@@ -215,7 +209,7 @@ impl<T: Real> Footing<T> {
 mod tests {
     use nalgebra::{UnitQuaternion, Vector3};
 
-    use super::{HoldingMargins, contact, reach_m};
+    use super::{HoldingMargins, contact};
     use crate::plant::events::branches::ByValue;
     use crate::{Airframe, Direction, External, GRAVITY_M_S2, RigidBody, Rotor, RotorLayout};
 
@@ -240,7 +234,7 @@ mod tests {
 
     fn force(depth_m: f64, velocity_m_s: [f64; 3]) -> Vector3<f64> {
         let ground =
-            contact(&airframe(), &level(depth_m, velocity_m_s), 0.0, reach_m(&airframe()), &mut ByValue);
+            contact(&airframe(), &level(depth_m, velocity_m_s), 0.0, airframe().reach_m(), &mut ByValue);
         assert!(ground.torque_n_m.norm() < 1e-9 * (1.0 + ground.force_n.norm()), "level feet share a load");
         ground.force_n
     }
@@ -281,14 +275,14 @@ mod tests {
         let depth = 0.01;
         let mut body = level(depth - 0.25 * libm::sin(roll), [0.0; 3]);
         body.attitude = rotation.into_inner();
-        let ground = contact(&airframe(), &body, 0.0, reach_m(&airframe()), &mut ByValue);
+        let ground = contact(&airframe(), &body, 0.0, airframe().reach_m(), &mut ByValue);
         let load = 0.5 * 2500.0 * depth;
         assert!((ground.force_n - Vector3::new(0.0, 0.0, -load)).norm() < 1e-9, "{ground:?}");
         let torque = Vector3::new(-0.25 * load * libm::cos(roll), 0.0, 0.0);
         assert!((ground.torque_n_m - torque).norm() < 1e-9, "{ground:?}");
         // A rate about the down axis moves that foot backwards, and friction pulls it forward.
         body.body_rate_rad_s.z = 1.0;
-        let spun = contact(&airframe(), &body, 0.0, reach_m(&airframe()), &mut ByValue);
+        let spun = contact(&airframe(), &body, 0.0, airframe().reach_m(), &mut ByValue);
         assert!((spun.force_n.x - 0.7 * load).abs() < 1e-9 && spun.torque_n_m.z < 0.0, "{spun:?}");
     }
 

@@ -64,6 +64,78 @@ fn a_torque_is_found_from_angles_alone() {
     }
 }
 
+/// Noise hides how a torque begins from sample to sample, not how far its estimate has come: Laguerre MPC is moved by 0.4 (Crazyflie) to 1.2
+/// (default airframe) times as far as the regulator.
+#[test]
+fn a_torque_under_noise_moves_laguerre_mpc_hardly_further_than_the_regulator() {
+    for preset in AirframePreset::ALL {
+        let [moved, regulated] = [ControllerKind::Lmpc, ControllerKind::Dlqr].map(|kind| {
+            let flown = |seed: u32| {
+                let sensors = Sensors {
+                    attitude_noise_rad: 1e-3,
+                    body_rate_noise_rad_s: 5e-3,
+                    seed,
+                    ..Sensors::default()
+                };
+                moved_m(&Configuration { sensors, ..raw(preset, kind) }, 0.08)[0]
+            };
+            (1..=8).map(flown).sum::<f64>() / 8.0
+        });
+        // The default airframe turns slowest, and most of the torque is within the noise.
+        let most = if preset == AirframePreset::Paper { 1.25 } else { 0.95 };
+        assert!(moved < most * regulated, "{preset:?}: {moved} and {regulated} m");
+    }
+}
+
+/// The estimated torque is all that holds the vehicle against one, wherever it flies. Where it stands, the ground does.
+#[test]
+fn a_torque_is_held_close_to_the_ground() {
+    for preset in AirframePreset::ALL {
+        let mut configuration = raw(preset, ControllerKind::Lmpc);
+        configuration.environment.ground_plane = true;
+        configuration.initial.position_m = [0.0, 0.0, -0.12];
+        let airframe = configuration.airframe;
+        let torque_n_m = Vector3::new(0.0, 0.02 * airframe.weight_n() * airframe.arm_length_m, 0.0);
+        let inputs = Inputs {
+            reference: PositionReference::goal(configuration.initial.position_m, 0.0),
+            disturbance: Disturbance { torque_n_m, ..Disturbance::default() },
+            ..Inputs::default()
+        };
+        let mut left_m = 0.0_f64;
+        fly(&configuration, &|_| inputs, 8.0, |outputs| {
+            if outputs.time_us > 7_000_000 {
+                left_m = left_m.max(outputs.tracking_error_m.norm());
+            }
+        });
+        assert!(left_m < 1e-3, "{preset:?}: {left_m} m");
+    }
+}
+
+/// A torque that a regulator has held for long begins for none of the laws that take over.
+#[test]
+fn a_torque_that_is_held_does_not_begin_when_another_law_takes_over() {
+    for preset in AirframePreset::ALL {
+        let mut configuration = raw(preset, ControllerKind::Dlqr);
+        let airframe = configuration.airframe;
+        let torque_n_m = Vector3::new(0.0, 0.05 * airframe.weight_n() * airframe.arm_length_m, 0.0);
+        let inputs = Inputs {
+            reference: PositionReference::goal([0.0; 3], 0.0),
+            disturbance: Disturbance { torque_n_m, ..Disturbance::default() },
+            ..Inputs::default()
+        };
+        let mut simulation = Simulation::new(&configuration, &inputs).unwrap();
+        simulation.advance_to(10_000_000, &|_| inputs).unwrap();
+        configuration.controllers.kind = ControllerKind::Lmpc;
+        simulation.reconfigure(&configuration).unwrap();
+        let mut largest_m = 0.0_f64;
+        for millisecond in 1..=3_000 {
+            simulation.advance_to(10_000_000 + 1_000 * millisecond, &|_| inputs).unwrap();
+            largest_m = largest_m.max(simulation.outputs().tracking_error_m.norm());
+        }
+        assert!(largest_m < 5e-3, "{preset:?}: {largest_m} m");
+    }
+}
+
 /// A force that swings in each axis with five rates that are no multiples of one another, up to a share of the weight with each.
 fn turbulence_n(weight_n: f64, share: f64, time_s: f64) -> Vector3<f64> {
     Vector3::from_fn(|axis, _| {

@@ -210,6 +210,7 @@ impl MassAndDrag {
         self.estimate.open(&prior(configuration), &[true; UNKNOWNS]);
         self.settling_s = SETTLING_S;
         (self.gusts_m_s2, self.surprises, self.before) = (0.0, 0.0, None);
+        self.fit = ThrustFit::new();
         self.interrupt();
     }
 
@@ -255,12 +256,12 @@ impl MassAndDrag {
             self.interrupt();
             return false;
         }
-        let noise_m_s2 = noise_m_s2(&configuration.sensors, terms.filled, sampled_s);
+        let [sensed_m_s2, missed_m_s2] = noises_m_s2(&configuration.sensors, terms.filled, sampled_s);
+        let noise_m_s2 = length(missed_m_s2, sensed_m_s2);
         let unexplained_m_s2 = if terms.filled > FITTED {
             let along = self.along_thrust(configuration, &terms);
-            let sensed_m2_s4 = noise_m_s2 * noise_m_s2 - MODEL_NOISE_M_S2 * MODEL_NOISE_M_S2;
-            let sensed_m_s2 = libm::sqrt(sensed_m2_s4.max(0.0));
-            self.fit.see(&along, averaging.steady_motion, FIT_DEVIATIONS * sensed_m_s2)
+            let allowed_m_s2 = FIT_DEVIATIONS * sensed_m_s2 / terms.filled;
+            self.fit.see(&along, averaging.steady_motion, allowed_m_s2)
         } else {
             self.fit.deviation_m_s2()
         };
@@ -370,8 +371,8 @@ impl MassAndDrag {
         (GUST_SWINGS * self.gusts_m_s2).max(FIT_SWINGS * exceeding_m_s2)
     }
 
-    /// Thrust per mass, m/s², speed along it, m/s, and specific force along it, m/s², but for the drag that is believed in and for level
-    /// forces, which lean into it; FRD, of a filter as far as it is filled.
+    /// Thrust per mass, m/s², speed along it, m/s, and specific force along it, m/s², but for the configured drag and for level forces,
+    /// which lean into it; FRD, of a filter as far as it is filled.
     fn along_thrust(&self, configuration: &Configuration, terms: &Terms) -> Vector3<f64> {
         let velocity_m_s = terms.velocity_m_s.row(2).transpose();
         let drag_m_s2 = velocity_m_s.dot(&configuration.drag_1_s());
@@ -428,18 +429,17 @@ impl MassAndDrag {
     }
 }
 
-/// Deviation of a filtered equation under the white noise of the sensors, m/s², and what the model misses. Of that a filter of velocities
+/// Deviations of a filtered equation, m/s²: by the white noise of the sensors, and by what the model misses. Of that a filter of velocities
 /// has taken in as much as of all other terms: the first equations of a flight are small, and tell as much as the later ones. One of
 /// positions begins with an estimated velocity, the error of which it has whole from the first equation on. The sensors are sampled each
 /// `interval_s`.
-fn noise_m_s2(sensors: &Sensors, filled: f64, interval_s: f64) -> f64 {
-    let (sensed_m_s2, missed_m_s2) = if sensors.output_feedback {
-        (sensors.position_noise_m * libm::sqrt(interval_s) * noise_of_positions(), MODEL_NOISE_M_S2)
+fn noises_m_s2(sensors: &Sensors, filled: f64, interval_s: f64) -> [f64; 2] {
+    if sensors.output_feedback {
+        [sensors.position_noise_m * libm::sqrt(interval_s) * noise_of_positions(), MODEL_NOISE_M_S2]
     } else {
         let sensed_m_s2 = sensors.velocity_noise_m_s * libm::sqrt(interval_s) * noise_of_velocities();
-        (sensed_m_s2, MODEL_NOISE_M_S2 * filled)
-    };
-    length(missed_m_s2, sensed_m_s2)
+        [sensed_m_s2, MODEL_NOISE_M_S2 * filled]
+    }
 }
 
 /// √(x² + y²) of numbers whose squares are no matter.

@@ -7,11 +7,11 @@ use crate::finite::are_finite;
 
 /// Share of the averages that must be filled for a small deviation to be one.
 const FILLED: f64 = 0.6;
-/// Deviation of the forces from the plane, as a share of their change, up to which a mass alone is behind it while little was seen.
+/// While little was seen, a mass alone is behind forces that deviate from the plane by up to this share of their change …
 const EXACTNESS: f64 = 0.01;
-/// The same in any case, m/s².
+/// … and so much more, m/s².
 const LEAST_M_S2: f64 = 0.005;
-/// Share of the averages that must be filled for that after a jump.
+/// Share of the averages that must be filled after a jump for a plane to tell a mass from a force.
 const BEGUN: f64 = 0.2;
 /// How many times faster the deviation is smoothed than averaged.
 const QUICKNESS: f64 = 3.0;
@@ -21,8 +21,8 @@ const DEPENDENT: f64 = 1e-6;
 /// The plane f = α − μ t − κ w through the specific force f along the thrust, the thrust t per mass and the speed w along it of the last
 /// seconds, by least squares.
 ///
-/// Whatever the mass and the drag are, and whatever steady force there is beside them, such a plane goes through all of them. What does
-/// not lie in it is another force that changes. The controllers answer that force with thrust, so that it passes for an error of the
+/// Whatever the mass is, and the drag along the thrust, and whatever steady force there is beside them, such a plane goes through all of
+/// them. What does not lie in it is another force that changes. The controllers answer that force with thrust, so that it passes for an error of the
 /// mass.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ThrustFit {
@@ -89,6 +89,7 @@ impl ThrustFit {
     /// until they are filled. A plane through little tells only that forces change, not that they do not.
     ///
     /// Returns how far the forces deviate from the plane, m/s²: smoothed, or at present, where a jump counts at once, if that is more.
+    /// What leads out of the numbers begins another plane.
     pub(crate) fn see(&mut self, present: &Vector3<f64>, share_of_all: f64, noise_m_s2: f64) -> f64 {
         self.filled += (1.0 - self.filled) * share_of_all;
         let share = share_of_all / self.filled;
@@ -96,6 +97,10 @@ impl ThrustFit {
         self.mean += off * share;
         // About the new mean, which has gone a share of the way: (1 − s)(⟨x xᵀ⟩ + s x xᵀ).
         self.covariance = (self.covariance + off * (off * share).transpose()) * (1.0 - share);
+        if !are_finite(self.covariance.as_slice()) {
+            self.begin_anew();
+            return self.deviation_m_s2;
+        }
         if self.filled > FILLED {
             self.begun = Begun::LongAgo;
         }
@@ -225,6 +230,16 @@ mod tests {
             assert!(fits[1].is_in_doubt() == (time_s < 2.72), "{time_s} s");
         }
         assert!(fits[1].deviation_m_s2() > 0.3, "{:?}", fits[1]);
+    }
+
+    /// What leads out of the numbers is forgotten at once.
+    #[test]
+    fn numbers_out_of_range_begin_another_plane() {
+        let mut fit = ThrustFit::new();
+        for force in [-9.8, -9.8e200, -9.8] {
+            let deviation = fit.see(&Vector3::new(9.8, 0.0, force), 0.02 / 3.0, 0.0);
+            assert!(deviation == 0.0 && fit.is_possible(), "{force}: {fit:?}");
+        }
     }
 
     #[test]
