@@ -14,8 +14,8 @@ pub(super) struct PredictedRotors {
 impl PredictedRotors {
     /// At the start: in hover if they turn, else at rest.
     pub(super) fn new(airframe: &Airframe, armed: bool) -> Self {
-        let speed_rad_s = if armed { airframe.hover_rotor_speed_rad_s() } else { 0.0 };
-        Self { speed_rad_s: [speed_rad_s; 4], time_us: 0 }
+        let speed_rad_s = if armed { airframe.balanced_rotor_speeds_rad_s() } else { [0.0; 4] };
+        Self { speed_rad_s, time_us: 0 }
     }
 
     /// rad/s, in the order of the airframe's layout.

@@ -23,7 +23,7 @@ impl Commands {
         let airframe = &configuration.airframe;
         Self {
             flight: Inputs::default(),
-            rotor_rad_s: [airframe.hover_rotor_speed_rad_s(); 4],
+            rotor_rad_s: airframe.balanced_rotor_speeds_rad_s(),
             rate_rad_s: Vector3::zeros(),
             thrust_n: airframe.mass_kg * quadrotor::GRAVITY_M_S2,
         }

@@ -161,11 +161,12 @@ impl Seen {
 
 impl AttitudeController {
     /// Takes over a vehicle, as if it had been on its reference: the whole error and the whole rate count
-    /// from the first sample on.
-    pub fn new(attitude: &UnitQuaternion<f64>) -> Self {
+    /// from the first sample on. The rotors have held it by an angular acceleration, FRD, rad/s², against what disturbs it.
+    pub fn new(attitude: &UnitQuaternion<f64>, held_rad_s2: &Vector3<f64>) -> Self {
+        let (zero, none) = (SVector::zeros(), Vector1::zeros());
         Self {
-            lean: ControllerState::at_rest().keeping(),
-            turn: ControllerState::at_rest().keeping(),
+            lean: ControllerState::new(zero, held_rad_s2.xy(), Vector2::zeros()).keeping(),
+            turn: ControllerState::new(SVector::zeros(), Vector1::new(held_rad_s2.z), none).keeping(),
             attitude: *attitude,
             deviation: Deviation::default(),
             integral_rad_s2: Vector3::zeros(),

@@ -70,12 +70,12 @@ fn interval_s(latest_us: &mut Option<u64>, time_us: u64, period_us: u64) -> f64 
 }
 
 impl Cascade {
-    /// Takes over a vehicle.
-    pub fn new(body: &RigidBody) -> Self {
+    /// Takes over a vehicle whose rotors hold it by an angular acceleration, FRD, rad/s², against what disturbs it.
+    pub fn new(body: &RigidBody, held_rad_s2: &Vector3<f64>) -> Self {
         Self {
             position: PositionController::new(body.position_m.xy()),
             altitude: AltitudeController::new(body.position_m.z),
-            attitude: AttitudeController::new(&body.rotation()),
+            attitude: AttitudeController::new(&body.rotation(), held_rad_s2),
             narrowed: NarrowedWay::default(),
             followed: FollowedWay::default(),
             turned: TurnedWay::default(),

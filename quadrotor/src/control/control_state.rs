@@ -60,7 +60,9 @@ impl ControlState {
     ) -> Result<Self, ConfigurationError> {
         let shaping = inputs.shaping.unwrap_or(configuration.reference.shaping);
         let start = instruments.read_at_takeover(time_us);
-        let (mut guidance, cascade) = engaged(configuration, shaping, &start.motion, time_us);
+        let first = instruments.read(time_us);
+        let estimator = estimator(configuration, &first, time_us);
+        let (mut guidance, cascade) = engaged(configuration, shaping, (&start.motion, &estimator), time_us);
         if let Target::Reference(reference) = &inputs.target
             && inputs.armed
             && !shaping
@@ -69,7 +71,6 @@ impl ControlState {
             let limits = (&configuration.flyable_limits(), &configuration.response_times());
             guidance.sample(reference, inputs.plan.as_ref(), limits, time_us);
         }
-        let first = instruments.read(time_us);
         if !(start.is_possible() && first.is_possible()) {
             return Err(ConfigurationError::Measurement);
         }
@@ -84,7 +85,7 @@ impl ControlState {
             engage: false,
             guidance,
             limits: CommandLimits::new(&configuration.limits),
-            estimator: estimator(configuration, &first, time_us),
+            estimator,
             learned: MassAndDrag::new(configuration),
             cascade,
             command: RotorCommand::held(&configuration.airframe, start.rotor_speed_rad_s),
@@ -290,7 +291,8 @@ impl ControlState {
     #[inline(never)]
     fn engage_at(&mut self, configuration: &Configuration, start: &Measurement, time_us: u64) {
         let shaping = self.guidance.is_shaped();
-        (self.guidance, self.cascade) = engaged(configuration, shaping, &start.motion, time_us);
+        (self.guidance, self.cascade) =
+            engaged(configuration, shaping, (&start.motion, &self.estimator), time_us);
         self.command = RotorCommand::held(&configuration.airframe, start.rotor_speed_rad_s);
     }
 
@@ -304,15 +306,20 @@ impl ControlState {
     ) -> Result<(), ControlError> {
         let takes_over = self.takes_over(inputs);
         self.take_law(configuration, inputs, time_us);
-        if inputs.armed && takes_over {
-            let start = instruments.read_at_takeover(time_us).checked(time_us)?;
-            self.engage_at(configuration, &start, time_us);
-        }
-        if inputs.armed && !self.armed {
-            self.limits = CommandLimits::new(&configuration.limits);
+        let takes_off = inputs.armed && !self.armed;
+        let start = if inputs.armed && takes_over {
+            Some(instruments.read_at_takeover(time_us).checked(time_us)?)
+        } else {
+            None
+        };
+        if takes_off {
             let first = instruments.read(time_us).checked(time_us)?;
+            self.limits = CommandLimits::new(&configuration.limits);
             self.estimator = estimator(configuration, &first, time_us);
             self.learned.take_off(configuration);
+        }
+        if let Some(start) = start {
+            self.engage_at(configuration, &start, time_us);
         }
         self.engage &= !inputs.armed;
         self.armed = inputs.armed;
@@ -456,17 +463,17 @@ fn check(design: &LoopDesign, inputs: &ControlInputs, time_us: u64) -> Result<()
 fn engaged(
     configuration: &Configuration,
     shaping: bool,
-    body: &RigidBody,
+    (body, estimator): (&RigidBody, &Estimator),
     time_us: u64,
 ) -> (Guidance, Cascade) {
     let (_, _, psi) = body.rotation().euler_angles();
     (
         Guidance::new(&configuration.flyable_limits(), shaping, &body.position_m, psi, time_us),
-        Cascade::new(body),
+        Cascade::new(body, &-estimator.disturbance_rad_s2()),
     )
 }
 
 /// An estimate that begins with a measurement.
 fn estimator(configuration: &Configuration, first: &Measurement, time_us: u64) -> Estimator {
-    Estimator::new(&configuration.sensors, &first.motion, first.rotor_speed_rad_s, time_us)
+    Estimator::new(configuration, &first.motion, first.rotor_speed_rad_s, time_us)
 }

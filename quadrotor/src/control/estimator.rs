@@ -15,6 +15,8 @@ use crate::{
 /// Rotors that make less than this share of the weight do not carry the vehicle, even one that is believed to be half as heavy again as
 /// it is.
 const CARRYING_SHARE: f64 = 0.6;
+/// A vehicle that turns slower than this, rad/s, does not turn but for noise.
+const BALANCED_RAD_S: f64 = 0.2;
 
 /// The estimate of the vehicle's motion at the next sample of the attitude controller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,19 +32,24 @@ pub struct Estimator {
 }
 
 impl Estimator {
-    /// Takes over a vehicle that was measured: at rest there, unless the measurement contains its motion.
+    /// Takes over a vehicle that was measured: at rest there, unless the measurement contains its motion. One that does not turn is in
+    /// balance: something holds it against what its rotors make, such as a centre of mass beside theirs.
     pub(crate) fn new(
-        sensors: &Sensors,
+        configuration: &Configuration,
         measured: &RigidBody,
         rotor_speed_rad_s: [f64; 4],
         time_us: u64,
     ) -> Self {
         let at_rest =
             RigidBody { velocity_m_s: Vector3::zeros(), body_rate_rad_s: Vector3::zeros(), ..*measured };
+        let body = if configuration.sensors.output_feedback { at_rest } else { *measured };
+        let is_balanced = body.body_rate_rad_s.norm() < BALANCED_RAD_S;
+        let made_n_m = wrench_of_rotors(&configuration.airframe, &rotor_speed_rad_s).torque_n_m;
+        let held_rad_s2 = -made_n_m.component_div(&configuration.believed_inertia_kg_m2());
         Self {
-            body: if sensors.output_feedback { at_rest } else { *measured },
+            body,
             disturbance_m_s2: Vector3::zeros(),
-            disturbance_rad_s2: Vector3::zeros(),
+            disturbance_rad_s2: if is_balanced { held_rad_s2 } else { Vector3::zeros() },
             rotor_speed_rad_s,
             time_us,
         }
@@ -183,7 +190,7 @@ impl Estimator {
         self.time_us = time_us + period_us;
         if !self.is_finite() {
             // A tumbling beyond all models has led it out of the numbers: the measurement is all there is.
-            *self = Self::new(&configuration.sensors, measured, self.rotor_speed_rad_s, self.time_us);
+            *self = Self::new(configuration, measured, self.rotor_speed_rad_s, self.time_us);
         }
     }
 }

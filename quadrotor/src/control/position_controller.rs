@@ -104,7 +104,9 @@ impl PositionController {
             if reference.is_bent { [jerk_jump * BENT, zero] } else { [jerk_jump, snap_jump] };
         let motion = MotionSample {
             deviation,
-            change: measured - self.controller.measured() - motion_of(reference, &self.reference),
+            change: measured
+                - self.before(&(turning - seen.disturbance_m_s4))
+                - motion_of(reference, &self.reference),
             feedback: self.controller.feedback(),
             jump: by_axis([zero, zero, zero, seen_jerk_jump, seen_snap_jump, zero]),
         };
@@ -143,6 +145,16 @@ impl PositionController {
         let applied = step.input.cap_magnitude(present_m_s2);
         self.controller.apply(&applied);
         (applied, ControllerActivity::of(&step, &step.input, &applied))
+    }
+
+    /// The state at the last sample; before the first one that of a vehicle that the rotors have held, with this snap, m/s⁴, against what
+    /// disturbs it.
+    fn before(&self, held_m_s4: &Vector2<f64>) -> SVector<f64, POSITION_STATES> {
+        if self.observed.has_begun() {
+            return self.controller.measured();
+        }
+        let zero = Vector2::zeros();
+        self.controller.measured() + by_axis([zero, zero, zero, zero, *held_m_s4, *held_m_s4])
     }
 
     /// Before the first sample of a vehicle that deviates at a velocity, m/s: see [`ObservedMotion::first_feedback`].

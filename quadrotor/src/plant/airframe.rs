@@ -1,6 +1,6 @@
 //! The vehicle's physical constants.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector4};
 use serde::{Deserialize, Serialize};
 
 use crate::{BatteryPack, RotorAerodynamics, RotorLayout, RotorSpin};
@@ -99,6 +99,38 @@ impl Airframe {
     /// Speed at which four equal rotors carry the weight, rad/s: f(x₀, u₀) = 0 with 4 k₁ ω² = m g.
     pub fn hover_rotor_speed_rad_s(&self) -> f64 {
         libm::sqrt(self.weight_n() / (4.0 * self.thrust_coefficient_n_s2))
+    }
+
+    /// Speeds at which the rotors carry the weight without turning the vehicle, rad/s, in the order of its layout: those nearer to an offset
+    /// centre of mass carry more of it. Equal speeds where a rotor would have to pull, or make more than its largest thrust.
+    ///
+    /// ```
+    /// use quadrotor::{Airframe, wrench_of_rotors};
+    ///
+    /// // 1 cm ahead of the rotors' centre: the front rotor turns faster than the back one.
+    /// let airframe = Airframe { centre_of_gravity_m: [0.01, 0.0, 0.0], ..Airframe::default() };
+    /// let speeds = airframe.balanced_rotor_speeds_rad_s();
+    /// assert!(speeds[0] > speeds[1] && speeds[1] > speeds[2]);
+    /// let wrench = wrench_of_rotors(&airframe, &speeds);
+    /// assert!((wrench.thrust_n - airframe.weight_n()).abs() < 1e-12);
+    /// assert!((wrench.torque_n_m.y - 0.01 * airframe.weight_n()).abs() < 1e-12);
+    /// ```
+    pub fn balanced_rotor_speeds_rad_s(&self) -> [f64; 4] {
+        let equal = [self.hover_rotor_speed_rad_s(); 4];
+        if self.is_centred() {
+            return equal;
+        }
+        let Ok(inverse) = self.layout.inverse_allocation() else { return equal };
+        // The thrust acts at the centre of mass: c × (0, 0, −m g) about the rotors' centre.
+        let [x, y, _] = self.centre_of_gravity_m;
+        let (weight_n, l) = (self.weight_n(), self.arm_length_m);
+        let thrusts_n = inverse * Vector4::new(weight_n, -y * weight_n / l, x * weight_n / l, 0.0);
+        let most_n = self.thrust_range_n().1 / 4.0;
+        if thrusts_n.iter().any(|thrust_n| !(0.0..=most_n).contains(thrust_n)) {
+            return equal;
+        }
+        // ω = √(thrust / k₁)
+        thrusts_n.map(|thrust_n| libm::sqrt(thrust_n / self.thrust_coefficient_n_s2)).into()
     }
 
     /// Thrust in hover as a share of the largest thrust of the four rotors.

@@ -44,9 +44,9 @@ impl PlantState {
         }
     }
 
-    /// Where a flight begins, with rotors that carry the weight.
+    /// Where a flight begins, with rotors that carry the weight and balance it.
     pub fn hovering(initial: &InitialState, airframe: &Airframe) -> Self {
-        Self { rotor_speed_rad_s: [airframe.hover_rotor_speed_rad_s(); 4], ..Self::at_rest(initial) }
+        Self { rotor_speed_rad_s: airframe.balanced_rotor_speeds_rad_s(), ..Self::at_rest(initial) }
     }
 
     /// Magnitudes that the numbers typically have: what an integrator relates its absolute tolerances to.

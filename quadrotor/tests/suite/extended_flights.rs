@@ -106,6 +106,28 @@ fn a_balanced_weight_is_no_motion() {
     }
 }
 
+/// A hover under way with an offset centre of mass has rotors that balance it, and the controllers know from the first sample on that
+/// something holds the body against them.
+#[test]
+fn a_balanced_hover_begins_at_rest() {
+    for preset in AirframePreset::ALL {
+        for kind in [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr] {
+            for output_feedback in [false, true] {
+                let mut configuration = Configuration::for_airframe(&preset.airframe()).unwrap();
+                configuration.controllers.kind = kind;
+                configuration.sensors.output_feedback = output_feedback;
+                let airframe = &mut configuration.airframe;
+                airframe.centre_of_gravity_m = [0.02, -0.014, 0.0].map(|part| part * airframe.arm_length_m);
+                let mut farthest_m = 0.0_f64;
+                fly(&configuration, &goal([0.0; 3], 0.0), 4.0, |outputs| {
+                    farthest_m = farthest_m.max(outputs.position_m.norm());
+                });
+                assert!(farthest_m < 1e-9, "{preset:?} {kind:?} {output_feedback}: {farthest_m} m");
+            }
+        }
+    }
+}
+
 /// From the ground, with all options, back to the ground; without rotors the feet bear the offset weight.
 #[test]
 fn with_everything_it_takes_off_and_lands() {

@@ -3,8 +3,8 @@
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use quadrotor::{
-    Airframe, BatteryPack, Direction, Disturbance, Environment, GRAVITY_M_S2, InitialState, Plant,
-    PlantInputs, PlantState, Rotor, RotorAerodynamics, RotorLayout, RotorSpin, Wrench,
+    Airframe, AirframePreset, BatteryPack, Direction, Disturbance, Environment, GRAVITY_M_S2, InitialState,
+    Plant, PlantInputs, PlantState, Rotor, RotorAerodynamics, RotorLayout, RotorSpin, Wrench,
 };
 
 /// Integration step, s.
@@ -183,7 +183,10 @@ proptest! {
 #[test]
 fn an_offset_centre_of_gravity_turns_the_body() {
     let airframe = Airframe { centre_of_gravity_m: [0.01, -0.02, 0.03], ..Airframe::default() };
-    let hover = PlantState::hovering(&InitialState::default(), &airframe);
+    let hover = PlantState {
+        rotor_speed_rad_s: [airframe.hover_rotor_speed_rad_s(); 4],
+        ..PlantState::at_rest(&InitialState::default())
+    };
     let derivative =
         free_space(&airframe).derivative(&hover, &PlantInputs::rotor_speeds(hover.rotor_speed_rad_s));
     let [jx, jy, _] = airframe.inertia_kg_m2;
@@ -191,6 +194,22 @@ fn an_offset_centre_of_gravity_turns_the_body() {
     let expected = Vector3::new(-0.02 * weight / jx, -0.01 * weight / jy, 0.0);
     assert!((derivative.body.body_rate_rad_s - expected).norm() < 1e-12);
     assert!(derivative.body.velocity_m_s.norm() < 1e-14, "the centre of mass does not accelerate");
+}
+
+/// The rotors near the centre of mass make the more thrust by which a hover does not turn.
+#[test]
+fn a_hover_balances_an_offset_centre_of_gravity() {
+    for preset in AirframePreset::ALL {
+        let airframe = preset.airframe();
+        let centre_of_gravity_m = [0.05, -0.03, 0.02].map(|part| part * airframe.arm_length_m);
+        let airframe = Airframe { centre_of_gravity_m, ..airframe };
+        let hover = PlantState::hovering(&InitialState::default(), &airframe);
+        let inputs = PlantInputs::rotor_speeds(hover.rotor_speed_rad_s);
+        let derivative = free_space(&airframe).derivative(&hover, &inputs);
+        let [turns, accelerates] =
+            [derivative.body.body_rate_rad_s, derivative.body.velocity_m_s].map(|rate| rate.norm());
+        assert!(turns < 1e-10 && accelerates < 1e-13, "{preset:?}: {turns} {accelerates}");
+    }
 }
 
 /// On the ground it stands at z = 0 but for the compliance, which the front feet bear more of.
