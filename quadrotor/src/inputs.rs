@@ -28,13 +28,17 @@ pub struct Inputs {
     /// is followed in position and velocity as it is, as far as three rotors can. It goes before an attitude target.
     pub lost_rotor: Option<usize>,
     /// What the controllers take the vehicle's motion for, in place of the true motion and the noise of
-    /// [`Sensors`](crate::Sensors). What the predictor of disturbances believes of its errors stays the configured noise.
+    /// [`Sensors`](crate::Sensors). What the predictor of disturbances believes of its errors stays the configured noise. The ground counts
+    /// as 1 m nearer: by so much an estimated height may be off.
     pub estimate: Option<RigidBody>,
     /// What is wrong with each rotor, in the order of the airframe's layout. Disarmed, all of them come to rest.
     pub rotor_faults: [Option<RotorFault>; 4],
     /// z of the ground below the vehicle, NED, m: see [`PlantInputs::ground_z_m`](crate::PlantInputs::ground_z_m).
     pub ground_z_m: f64,
 }
+
+/// An estimated height is off by no more than this, m, as long as a vehicle has its barometer or its receiver.
+const ESTIMATED_HEIGHT_M: f64 = 1.0;
 
 /// The paper's flight: armed, to 5 m north, 5 m east, 10 m up, no disturbance, sound rotors, flat ground.
 impl Default for Inputs {
@@ -102,7 +106,8 @@ impl Inputs {
             plan: None,
             armed: self.armed,
             shaping: self.shaping,
-            ground_z_m: self.ground_z_m,
+            // An estimate of the height may be off.
+            ground_z_m: self.ground_z_m - if self.estimate.is_some() { ESTIMATED_HEIGHT_M } else { 0.0 },
         };
         // A plan is large, and mostly there is none to be copied.
         if self.plan.is_some() {

@@ -88,14 +88,17 @@ impl Moving for Outputs {
 const ATTITUDE: &[&str] = &["initial.attitude."];
 const BODY_VELOCITY: &[&str] = &["initial.velocity.", "initial.attitude."];
 // A name that a model does not have stands for nothing.
-// The rotors begin at hover speed when armed.
+// Armed, the rotors begin at speeds that carry the weight and balance it.
 const ROTOR_SPEEDS: &[&str] = &[
     "armed",
     "actuation",
     "initial.hovering",
     "airframe.preset",
     "airframe.mass",
+    "airframe.arm_length",
+    "airframe.centre_of_gravity.",
     "airframe.rotor.thrust_coefficient",
+    "airframe.rotor.speed_max",
 ];
 // Of rotors in moving air, and close to the ground.
 const WRENCH: &[&str] = &[
@@ -114,6 +117,8 @@ const BATTERY: &[&str] = &[
     "initial.hovering",
     "airframe.preset",
     "airframe.mass",
+    "airframe.arm_length",
+    "airframe.centre_of_gravity.",
     "airframe.rotor.",
     "airframe.battery.",
     "initial.discharge",

@@ -46,7 +46,8 @@ pub struct ControlInputs {
     /// Switches the shaper on or off; the reference goes on from where it is and as it moves. `None` leaves it as it is: at
     /// the start, as configured.
     pub shaping: Option<bool>,
-    /// z of the ground below the vehicle, NED, m: nothing is learned of a flight close to it.
+    /// z of the ground below the vehicle, NED, m: nothing is learned of a flight close to it, nor before a vehicle has left the place where
+    /// it stood. If the measured height may be off, tell the ground nearer by so much.
     pub ground_z_m: f64,
 }
 

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::control::cascade::Cascade;
-use crate::control::clearance::{height_m, is_clear};
+use crate::control::clearance::Clearance;
 use crate::control::command_limits::CommandLimits;
 use crate::control::control_inputs::{ControlInputs, ControlLaw, Target};
 use crate::control::estimator::Estimator;
@@ -40,6 +40,7 @@ pub struct ControlState {
     guidance: Guidance,
     /// Limits of the commands.
     limits: CommandLimits,
+    clearance: Clearance,
     estimator: Estimator,
     learned: MassAndDrag,
     cascade: Cascade,
@@ -85,6 +86,7 @@ impl ControlState {
             engage: false,
             guidance,
             limits: CommandLimits::new(&configuration.limits),
+            clearance: Clearance::take_off(configuration, &first),
             estimator,
             learned: MassAndDrag::new(configuration),
             cascade,
@@ -104,7 +106,7 @@ impl ControlState {
                 reason: "its controllers do not sample when they would",
             });
         }
-        if !self.learned.is_possible(configuration) {
+        if !(self.learned.is_possible(configuration) && self.clearance.is_possible()) {
             return Err(ConfigurationError::State { reason: "what it has learned is out of range" });
         }
         Ok(())
@@ -198,6 +200,7 @@ impl ControlState {
         self.cascade.shift(by_m);
         self.estimator.shift(by_m);
         self.learned.shift(by_m);
+        self.clearance.shift(by_m.z);
     }
 
     /// φ and θ that the position controller asks of the attitude controller, rad.
@@ -316,6 +319,7 @@ impl ControlState {
             let first = instruments.read(time_us).checked(time_us)?;
             self.limits = CommandLimits::new(&configuration.limits);
             self.estimator = estimator(configuration, &first, time_us);
+            self.clearance = Clearance::take_off(configuration, &first);
             self.learned.take_off(configuration);
         }
         if let Some(start) = start {
@@ -335,7 +339,9 @@ impl ControlState {
         (due, time_us): (Due, u64),
     ) -> Result<(), ControlError> {
         let configuration = &if due.attitude {
-            self.learn(design, &measurement.motion, inputs.ground_z_m, time_us)
+            let z_m = measurement.motion.position_m.z;
+            self.clearance.observe(&design.configuration, inputs.ground_z_m, z_m);
+            self.learn(design, &measurement.motion, time_us)
         } else {
             self.believed(&design.configuration)
         };
@@ -373,7 +379,7 @@ impl ControlState {
             }
         }
         if due.attitude {
-            self.predict(&design.cascade, configuration, &seen, (inputs.ground_z_m, time_us));
+            self.predict(&design.cascade, configuration, &seen, time_us);
         }
         Ok(())
     }
@@ -439,13 +445,12 @@ impl ControlState {
         design: &CascadeDesign,
         configuration: &Configuration,
         seen: &Observation,
-        (ground_z_m, time_us): (f64, u64),
+        time_us: u64,
     ) {
         let times = (time_us, configuration.controllers.attitude.sample_time_us);
         self.estimator.predict(configuration, design, &seen.measured, &self.command.speed_rad_s, times);
-        let height_m = height_m(configuration, ground_z_m, seen.measured.position_m.z);
-        if !is_clear(&configuration.airframe, height_m) {
-            self.estimator.stand_if_not_carried(configuration);
+        if self.clearance.may_stand(configuration, &self.estimator.rotor_speed_rad_s()) {
+            self.estimator.stand();
         }
     }
 }

@@ -12,9 +12,6 @@ use crate::{
     Airframe, CascadeDesign, Configuration, GRAVITY_M_S2, RigidBody, Sensors, Wrench, wrench_of_rotors,
 };
 
-/// Rotors that make less than this share of the weight do not carry the vehicle, even one that is believed to be half as heavy again as
-/// it is.
-const CARRYING_SHARE: f64 = 0.6;
 /// A vehicle that turns slower than this, rad/s, does not turn but for noise.
 const BALANCED_RAD_S: f64 = 0.2;
 
@@ -108,13 +105,9 @@ impl Estimator {
         self.rotor_speed_rad_s
     }
 
-    /// Forgets the torque that was found, close to the ground, if the rotors do not carry the vehicle: it stands there, and the ground,
-    /// which answers every torque, would pass for one.
-    pub(crate) fn stand_if_not_carried(&mut self, configuration: &Configuration) {
-        let thrust_n = wrench_of_rotors(&configuration.airframe, &self.rotor_speed_rad_s).thrust_n;
-        if thrust_n < CARRYING_SHARE * configuration.believed_mass_kg() * GRAVITY_M_S2 {
-            self.disturbance_rad_s2 = Vector3::zeros();
-        }
+    /// Forgets the torque that was found, where the vehicle stands: the ground, which answers every torque, would pass for one.
+    pub(crate) fn stand(&mut self) {
+        self.disturbance_rad_s2 = Vector3::zeros();
     }
 
     /// Goes on under another belief in mass, inertia and drag, for an unchanged vehicle: what thrust and drag are believed to accelerate

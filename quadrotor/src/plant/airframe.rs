@@ -117,12 +117,12 @@ impl Airframe {
     /// ```
     pub fn balanced_rotor_speeds_rad_s(&self) -> [f64; 4] {
         let equal = [self.hover_rotor_speed_rad_s(); 4];
-        if self.is_centred() {
+        let [x, y, _] = self.centre_of_gravity_m;
+        if x == 0.0 && y == 0.0 {
             return equal;
         }
         let Ok(inverse) = self.layout.inverse_allocation() else { return equal };
         // The thrust acts at the centre of mass: c × (0, 0, −m g) about the rotors' centre.
-        let [x, y, _] = self.centre_of_gravity_m;
         let (weight_n, l) = (self.weight_n(), self.arm_length_m);
         let thrusts_n = inverse * Vector4::new(weight_n, -y * weight_n / l, x * weight_n / l, 0.0);
         let most_n = self.thrust_range_n().1 / 4.0;

@@ -1,7 +1,6 @@
 //! What a control loop learns of its vehicle.
 
 use super::ControlState;
-use crate::control::clearance::height_m;
 use crate::control::control_inputs::ControlLaw;
 use crate::control::learning::mass_and_drag::FlightSample;
 use crate::control::learning::motion_equation::MeasuredMotion;
@@ -24,7 +23,6 @@ impl ControlState {
         &mut self,
         LoopDesign { configuration, cascade, .. }: &LoopDesign,
         measured: &RigidBody,
-        ground_z_m: f64,
         time_us: u64,
     ) -> Configuration {
         let believed = self.believed(configuration);
@@ -40,7 +38,7 @@ impl ControlState {
             } else {
                 MeasuredMotion::Velocity(measured.velocity_m_s)
             },
-            height_m: height_m(configuration, ground_z_m, measured.position_m.z),
+            is_clear: self.clearance.is_clear(),
             velocity_m_s: seen.velocity_m_s,
             attitude: seen.rotation(),
             rotor_speed_rad_s: &self.estimator.rotor_speed_rad_s(),

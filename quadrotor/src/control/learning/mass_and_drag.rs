@@ -3,7 +3,6 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::control::clearance::is_clear;
 use crate::control::learning::averaging::{Averaging, SampledAveraging};
 use crate::control::learning::bounded_estimate::BoundedEstimate;
 use crate::control::learning::excitation::{Excitation, Shown};
@@ -67,8 +66,8 @@ pub(crate) struct FlightSample<'a> {
     pub(crate) motion: MeasuredMotion,
     /// The velocity that the controllers go by, NED, m/s.
     pub(crate) velocity_m_s: Vector3<f64>,
-    /// Height above the ground plane, if there is one, m.
-    pub(crate) height_m: Option<f64>,
+    /// Whether nothing touches the vehicle.
+    pub(crate) is_clear: bool,
     /// FRD into NED.
     pub(crate) attitude: UnitQuaternion<f64>,
     /// Speeds of the rotors, measured or by their model, rad/s.
@@ -233,7 +232,7 @@ impl MassAndDrag {
             return false;
         }
         let thrust_m_s2 = thrust_per_mass_m_s2(configuration, sample);
-        if !flies(configuration, sample, thrust_m_s2) {
+        if !flies(sample, thrust_m_s2) {
             self.interrupt();
             return false;
         }
@@ -476,9 +475,8 @@ fn thrust_per_mass_m_s2(configuration: &Configuration, sample: &FlightSample<'_>
 }
 
 /// Whether an instant belongs to a flight that shows a mass: clear of the ground, and not in free fall.
-fn flies(configuration: &Configuration, sample: &FlightSample<'_>, thrust_m_s2: f64) -> bool {
-    let is_clear = is_clear(&configuration.airframe, sample.height_m);
-    is_clear && thrust_m_s2 > LEAST_THRUST_SHARE * GRAVITY_M_S2
+fn flies(sample: &FlightSample<'_>, thrust_m_s2: f64) -> bool {
+    sample.is_clear && thrust_m_s2 > LEAST_THRUST_SHARE * GRAVITY_M_S2
 }
 
 /// Whether a rotor is commanded to the upper end of its range, where it may lack the power to do as it is told. As slowly as it can turn,

@@ -31,7 +31,7 @@ impl Recorded {
         FlightSample {
             motion: MeasuredMotion::Velocity(self.velocity_m_s),
             velocity_m_s: self.velocity_m_s,
-            height_m: None,
+            is_clear: true,
             attitude: self.attitude,
             rotor_speed_rad_s: &self.rotor_speed_rad_s,
             rotor_command_rad_s: &self.rotor_speed_rad_s,
@@ -191,7 +191,7 @@ fn nothing_is_learned_where_nothing_shows() {
     assert!(!unchanged(&configuration, &|_| ()), "the flight itself is learned from");
     let still = MeasuredMotion::Velocity(Vector3::zeros());
     assert!(unchanged(&configuration, &|sample| sample.motion = still), "at rest");
-    assert!(unchanged(&configuration, &|sample| sample.height_m = Some(0.3)), "on the ground");
+    assert!(unchanged(&configuration, &|sample| sample.is_clear = false), "on the ground");
     assert!(unchanged(&configuration, &|sample| sample.rotor_speed_rad_s = &[60.0; 4]), "in free fall");
     const FASTEST: &[f64; 4] = &[450.0, 300.0, 300.0, 300.0];
     assert!(unchanged(&configuration, &|sample| sample.rotor_command_rad_s = FASTEST), "saturated");
@@ -247,7 +247,7 @@ proptest! {
             learner.observe(&configuration, &FlightSample {
                 motion: if by_position { MeasuredMotion::Position(motion) } else { MeasuredMotion::Velocity(motion) },
                 velocity_m_s: motion,
-                height_m: None,
+                is_clear: true,
                 attitude: UnitQuaternion::from_euler_angles(tilt, 0.3 * tilt, 0.0),
                 rotor_speed_rad_s: &rotors,
                 rotor_command_rad_s: &rotors,
