@@ -87,7 +87,7 @@ mod tests {
     /// A vehicle that takes itself to be 2 m up while it stands on the ground.
     #[test]
     fn where_it_stood_is_the_ground() {
-        let environment = Environment { ground_plane: true, ..Environment::default() };
+        let environment = Environment { ground_plane: true };
         let configuration = Configuration { environment, ..Configuration::default() };
         let mut first = first();
         first.motion.position_m.z = -2.0;
