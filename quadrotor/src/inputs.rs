@@ -28,8 +28,8 @@ pub struct Inputs {
     /// is followed in position and velocity as it is, as far as three rotors can. It goes before an attitude target.
     pub lost_rotor: Option<usize>,
     /// What the controllers take the vehicle's motion for, in place of the true motion and the noise of
-    /// [`Sensors`](crate::Sensors). What the predictor of disturbances believes of its errors stays the configured noise. The ground counts
-    /// as 1 m nearer: by so much an estimated height may be off.
+    /// [`Sensors`](crate::Sensors). What the predictor of disturbances believes of its errors stays the configured noise. The ground is
+    /// taken to be 1 m higher, because an estimated height may be wrong by that much: nothing is learned in the lowest metre or so.
     pub estimate: Option<RigidBody>,
     /// What is wrong with each rotor, in the order of the airframe's layout. Disarmed, all of them come to rest.
     pub rotor_faults: [Option<RotorFault>; 4],

@@ -15,6 +15,7 @@ use crate::design::attitude_limits::RotorRoom;
 use crate::design::capacities::{LEAN_FEW, LEAN_MANY, TURN_FEW, TURN_MANY};
 use crate::design::estimator_design::beyond;
 use crate::design::loop_design::LoopDesign;
+use crate::finite::are_finite;
 use crate::{CascadeDesign, Configuration};
 
 /// Tilt error from which a vehicle is upside down, rad: its reference may lean by the rest.
@@ -260,7 +261,10 @@ impl AttitudeController {
     ) -> Deviation {
         let before = self.answered_rad_s2.unwrap_or(*disturbance_rad_s2);
         let jump = (disturbance_rad_s2 - before).zip_map(&design.estimator.unsure_rad_s2, beyond);
-        self.answered_rad_s2 = Some(before + jump);
+        // What leads out of the numbers is not remembered.
+        if are_finite(jump.as_slice()) {
+            self.answered_rad_s2 = Some(before + jump);
+        }
         let Some(motion) = &design.attitude.motion else { return deviation.since(&self.deviation) };
         let driving = joined(&self.lean.feedback(), &self.turn.feedback()) + disturbance_rad_s2;
         let axes =

@@ -18,7 +18,7 @@ const STANDING_M_S: f64 = 0.5;
 /// that stands while its rotors begin to turn stands on the ground, wherever it takes itself to be.
 #[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Clearance {
-    /// Where the vehicle stood when its rotors began to turn, until it has left the ground there: z, NED, m.
+    /// Where the vehicle stood when its rotors began to turn, until it has left that place: z, NED, m.
     stood_z_m: Option<f64>,
     /// Whether nothing touches the vehicle, in any attitude.
     is_clear: bool,
@@ -36,7 +36,8 @@ impl Clearance {
     /// Takes in a measured z, NED, m, above a ground plane.
     pub(crate) fn observe(&mut self, configuration: &Configuration, ground_z_m: f64, z_m: f64) {
         let needed_m = needed_m(&configuration.airframe);
-        self.stood_z_m = self.stood_z_m.filter(|stood_z_m| stood_z_m - z_m <= needed_m);
+        // Where it sinks, there was no ground.
+        self.stood_z_m = self.stood_z_m.filter(|stood_z_m| libm::fabs(stood_z_m - z_m) <= needed_m);
         let is_above = !configuration.environment.ground_plane || ground_z_m - z_m > needed_m;
         self.is_clear = is_above && self.stood_z_m.is_none();
     }
@@ -68,7 +69,7 @@ fn needed_m(airframe: &Airframe) -> f64 {
 }
 
 /// Whether rotors of these speeds carry the vehicle.
-fn carries(configuration: &Configuration, rotor_speed_rad_s: &[f64; 4]) -> bool {
+pub(crate) fn carries(configuration: &Configuration, rotor_speed_rad_s: &[f64; 4]) -> bool {
     let thrust_n = wrench_of_rotors(&configuration.airframe, rotor_speed_rad_s).thrust_n;
     thrust_n > CARRYING_SHARE * configuration.believed_mass_kg() * GRAVITY_M_S2
 }
@@ -110,6 +111,20 @@ mod tests {
         }
         assert!(flying.may_stand(&configuration, &[0.0; 4]));
         assert!(!flying.may_stand(&configuration, &first.rotor_speed_rad_s));
+    }
+
+    /// Rotors that are started while the vehicle falls: it is caught below the place where they were started.
+    #[test]
+    fn a_vehicle_that_falls_did_not_stand() {
+        let configuration =
+            Configuration { environment: Environment { ground_plane: true }, ..Configuration::default() };
+        let mut falling = first();
+        falling.motion.position_m.z = -20.0;
+        let mut clearance = Clearance::take_off(&configuration, &falling);
+        for (z_m, expected) in [(-19.9, false), (-15.0, true), (-20.0, true)] {
+            clearance.observe(&configuration, 0.0, z_m);
+            assert_eq!(clearance.is_clear(), expected, "{z_m} m");
+        }
     }
 
     #[test]

@@ -47,7 +47,7 @@ pub struct ControlInputs {
     /// the start, as configured.
     pub shaping: Option<bool>,
     /// z of the ground below the vehicle, NED, m: nothing is learned of a flight close to it, nor before a vehicle has left the place where
-    /// it stood. If the measured height may be off, tell the ground nearer by so much.
+    /// it stood. If the measured height may be wrong, pass a ground that is higher (smaller z) by that much.
     pub ground_z_m: f64,
 }
 

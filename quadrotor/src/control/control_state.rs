@@ -62,7 +62,7 @@ impl ControlState {
         let shaping = inputs.shaping.unwrap_or(configuration.reference.shaping);
         let start = instruments.read_at_takeover(time_us);
         let first = instruments.read(time_us);
-        let estimator = estimator(configuration, &first, time_us);
+        let estimator = Estimator::take_over(configuration, &first, time_us);
         let (mut guidance, cascade) = engaged(configuration, shaping, (&start.motion, &estimator), time_us);
         if let Target::Reference(reference) = &inputs.target
             && inputs.armed
@@ -318,7 +318,7 @@ impl ControlState {
         if takes_off {
             let first = instruments.read(time_us).checked(time_us)?;
             self.limits = CommandLimits::new(&configuration.limits);
-            self.estimator = estimator(configuration, &first, time_us);
+            self.estimator = Estimator::take_over(configuration, &first, time_us);
             self.clearance = Clearance::take_off(configuration, &first);
             self.learned.take_off(configuration);
         }
@@ -476,9 +476,4 @@ fn engaged(
         Guidance::new(&configuration.flyable_limits(), shaping, &body.position_m, psi, time_us),
         Cascade::new(body, &-estimator.disturbance_rad_s2()),
     )
-}
-
-/// An estimate that begins with a measurement.
-fn estimator(configuration: &Configuration, first: &Measurement, time_us: u64) -> Estimator {
-    Estimator::new(configuration, &first.motion, first.rotor_speed_rad_s, time_us)
 }

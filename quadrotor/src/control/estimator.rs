@@ -5,15 +5,18 @@ use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::turned;
+use crate::control::clearance::carries;
 use crate::control::euler_equation::angular_acceleration_rad_s2;
 use crate::control::mass_belief::MassBelief;
 use crate::finite::are_finite;
 use crate::{
-    Airframe, CascadeDesign, Configuration, GRAVITY_M_S2, RigidBody, Sensors, Wrench, wrench_of_rotors,
+    Airframe, CascadeDesign, Configuration, GRAVITY_M_S2, Measurement, RigidBody, Sensors, Wrench,
+    wrench_of_rotors,
 };
 
-/// A vehicle that turns slower than this, rad/s, does not turn but for noise.
-const BALANCED_RAD_S: f64 = 0.2;
+/// A vehicle that turns slower than this, rad/s, and so many deviations of the noise does not turn.
+const STILL_RAD_S: f64 = 0.2;
+const STILL_DEVIATIONS: f64 = 4.0;
 
 /// The estimate of the vehicle's motion at the next sample of the attitude controller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,27 +32,40 @@ pub struct Estimator {
 }
 
 impl Estimator {
-    /// Takes over a vehicle that was measured: at rest there, unless the measurement contains its motion. One that does not turn is in
-    /// balance: something holds it against what its rotors make, such as a centre of mass beside theirs.
+    /// Of a vehicle that was measured: at rest there, unless the measurement contains its motion.
     pub(crate) fn new(
-        configuration: &Configuration,
+        sensors: &Sensors,
         measured: &RigidBody,
         rotor_speed_rad_s: [f64; 4],
         time_us: u64,
     ) -> Self {
         let at_rest =
             RigidBody { velocity_m_s: Vector3::zeros(), body_rate_rad_s: Vector3::zeros(), ..*measured };
-        let body = if configuration.sensors.output_feedback { at_rest } else { *measured };
-        let is_balanced = body.body_rate_rad_s.norm() < BALANCED_RAD_S;
-        let made_n_m = wrench_of_rotors(&configuration.airframe, &rotor_speed_rad_s).torque_n_m;
-        let held_rad_s2 = -made_n_m.component_div(&configuration.believed_inertia_kg_m2());
         Self {
-            body,
+            body: if sensors.output_feedback { at_rest } else { *measured },
             disturbance_m_s2: Vector3::zeros(),
-            disturbance_rad_s2: if is_balanced { held_rad_s2 } else { Vector3::zeros() },
+            disturbance_rad_s2: Vector3::zeros(),
             rotor_speed_rad_s,
             time_us,
         }
+    }
+
+    /// Takes over a vehicle that was measured. One that its rotors carry and that does not turn is in balance: something holds it against
+    /// what they make, such as a centre of mass beside theirs.
+    pub(crate) fn take_over(configuration: &Configuration, first: &Measurement, time_us: u64) -> Self {
+        let Measurement { motion, rotor_speed_rad_s } = first;
+        let sensors = &configuration.sensors;
+        let mut estimator = Self::new(sensors, motion, *rotor_speed_rad_s, time_us);
+        let still_rad_s = STILL_RAD_S + STILL_DEVIATIONS * sensors.body_rate_noise_rad_s;
+        let turns = estimator.body.body_rate_rad_s.norm() > still_rad_s;
+        if carries(configuration, rotor_speed_rad_s) && !turns {
+            let made_n_m = wrench_of_rotors(&configuration.airframe, rotor_speed_rad_s).torque_n_m;
+            let held_rad_s2 = made_n_m.component_div(&configuration.believed_inertia_kg_m2());
+            if are_finite(held_rad_s2.as_slice()) {
+                estimator.disturbance_rad_s2 = -held_rad_s2;
+            }
+        }
+        estimator
     }
 
     /// What the controllers go by at `time_us`: the measurement, in which the prediction stands for what is not measured or noisy.
@@ -183,7 +199,7 @@ impl Estimator {
         self.time_us = time_us + period_us;
         if !self.is_finite() {
             // A tumbling beyond all models has led it out of the numbers: the measurement is all there is.
-            *self = Self::new(configuration, measured, self.rotor_speed_rad_s, self.time_us);
+            *self = Self::new(&configuration.sensors, measured, self.rotor_speed_rad_s, self.time_us);
         }
     }
 }

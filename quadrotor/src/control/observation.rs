@@ -135,7 +135,7 @@ mod tests {
             attitude: attitude.into_inner(),
             body_rate_rad_s: rate,
         };
-        let estimator = Estimator::new(&configuration, &body, rotor_speed_rad_s, 0);
+        let estimator = Estimator::new(&configuration.sensors, &body, rotor_speed_rad_s, 0);
         let design = EstimatorDesign::new(&configuration).expect("a design");
         let seen = Observation::new(&configuration, (&estimator, &design), &body, 0);
         let asked_rad_s2 = Vector3::new(-1.5, 0.5, 0.0);

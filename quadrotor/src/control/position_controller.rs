@@ -104,9 +104,7 @@ impl PositionController {
             if reference.is_bent { [jerk_jump * BENT, zero] } else { [jerk_jump, snap_jump] };
         let motion = MotionSample {
             deviation,
-            change: measured
-                - self.before(&(turning - seen.disturbance_m_s4))
-                - motion_of(reference, &self.reference),
+            change: measured - self.before(&turning, (seen, law)) - motion_of(reference, &self.reference),
             feedback: self.controller.feedback(),
             jump: by_axis([zero, zero, zero, seen_jerk_jump, seen_snap_jump, zero]),
         };
@@ -147,14 +145,22 @@ impl PositionController {
         (applied, ControllerActivity::of(&step, &step.input, &applied))
     }
 
-    /// The state at the last sample; before the first one that of a vehicle that the rotors have held, with this snap, m/s⁴, against what
-    /// disturbs it.
-    fn before(&self, held_m_s4: &Vector2<f64>) -> SVector<f64, POSITION_STATES> {
-        if self.observed.has_begun() {
-            return self.controller.measured();
-        }
+    /// The state at the last sample, seen as it is now, when the law sees so much of what disturbs the vehicle, m/s⁴. Before the first one
+    /// the rotors have held the vehicle against that; a law that foresees limits has seen it, and a regulator that takes over does not.
+    fn before(
+        &self,
+        turning_m_s4: &Vector2<f64>,
+        (seen, law): (&HorizontalMotion, &PositionLaw),
+    ) -> SVector<f64, POSITION_STATES> {
         let zero = Vector2::zeros();
-        self.controller.measured() + by_axis([zero, zero, zero, zero, *held_m_s4, *held_m_s4])
+        let unseen_m_s4 = if !self.observed.has_begun() {
+            turning_m_s4 - seen.disturbance_m_s4
+        } else if law.regulator().is_some() {
+            -self.thrown.turning_m_s4()
+        } else {
+            zero
+        };
+        self.controller.measured() + by_axis([zero, zero, zero, zero, unseen_m_s4, unseen_m_s4])
     }
 
     /// Before the first sample of a vehicle that deviates at a velocity, m/s: see [`ObservedMotion::first_feedback`].

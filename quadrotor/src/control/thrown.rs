@@ -7,6 +7,7 @@ use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::attitude_loop::AttitudeLoop;
 use crate::design::estimator_design::beyond;
 use crate::design::position_limits::TurnUnderWay;
+use crate::finite::are_finite;
 
 /// How many times more jerk than what has thrown it lately made, a body is brought back from.
 const BRAKED: f64 = 5.0;
@@ -30,8 +31,16 @@ impl Thrown {
     pub(crate) fn answer_m_s4(&mut self, seen: &HorizontalMotion) -> Vector2<f64> {
         let change =
             (seen.disturbance_m_s4 - self.answered_m_s4).map(|change| beyond(change, seen.unsure_m_s4));
-        self.answered_m_s4 += change;
+        // What leads out of the numbers is not remembered.
+        if are_finite(change.as_slice()) {
+            self.answered_m_s4 += change;
+        }
         change
+    }
+
+    /// What turned the body beside the rotors at the last sample, m/s⁴.
+    pub(crate) fn turning_m_s4(&self) -> Vector2<f64> {
+        self.turning_m_s4
     }
 
     /// What is under way at a sample, `turning_m_s4` of it by what turns the body beside the rotors: it is answered within the delay of the
@@ -100,6 +109,24 @@ mod tests {
             assert!((under_way.snap_m_s4 - expected).abs() < 1e-9, "{under_way:?}");
             assert!((under_way.jerk_m_s3 - expected * delay_s).abs() < 1e-9, "{under_way:?}");
         }
+    }
+
+    /// Noise, and a sample out of the numbers, after which the next one counts as if it had not been.
+    #[test]
+    fn what_is_surely_a_change_is_answered_once() {
+        let seen = |snap_m_s4: f64| HorizontalMotion {
+            disturbance_m_s4: Vector2::new(snap_m_s4, 0.0),
+            unsure_m_s4: 2.0,
+            ..still()
+        };
+        let mut thrown = Thrown::default();
+        for (disturbance, answered) in
+            [(1.5, 0.0), (3.0, 1.0), (5.0, 2.0), (5.0, 0.0), (1.5, 0.0), (0.0, -1.0)]
+        {
+            assert_eq!(thrown.answer_m_s4(&seen(disturbance)).x, answered, "{disturbance} m/s⁴");
+        }
+        thrown.answer_m_s4(&seen(f64::NAN));
+        assert_eq!(thrown.answer_m_s4(&seen(5.0)).x, 1.0);
     }
 
     /// Nothing that turns the body: the limits hold, but for a turn that is under way.

@@ -111,28 +111,65 @@ fn a_torque_is_held_close_to_the_ground() {
     }
 }
 
-/// A torque that a regulator has held for long begins for none of the laws that take over.
+/// A torque that one law has held for long begins for none of those that take over.
 #[test]
 fn a_torque_that_is_held_does_not_begin_when_another_law_takes_over() {
+    let kinds = [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr];
     for preset in AirframePreset::ALL {
-        let mut configuration = raw(preset, ControllerKind::Dlqr);
-        let airframe = configuration.airframe;
-        let torque_n_m = Vector3::new(0.0, 0.05 * airframe.weight_n() * airframe.arm_length_m, 0.0);
-        let inputs = Inputs {
-            reference: PositionReference::goal([0.0; 3], 0.0),
-            disturbance: Disturbance { torque_n_m, ..Disturbance::default() },
+        for (before, after) in kinds.into_iter().flat_map(|before| kinds.map(|after| (before, after))) {
+            let mut configuration = raw(preset, before);
+            let airframe = configuration.airframe;
+            let torque_n_m = Vector3::new(0.0, 0.05 * airframe.weight_n() * airframe.arm_length_m, 0.0);
+            let inputs = Inputs {
+                reference: PositionReference::goal([0.0; 3], 0.0),
+                disturbance: Disturbance { torque_n_m, ..Disturbance::default() },
+                ..Inputs::default()
+            };
+            let mut simulation = Simulation::new(&configuration, &inputs).unwrap();
+            simulation.advance_to(15_000_000, &|_| inputs).unwrap();
+            configuration.controllers.kind = after;
+            simulation.reconfigure(&configuration).unwrap();
+            let mut largest_m = 0.0_f64;
+            for millisecond in 1..=3_000 {
+                simulation.advance_to(15_000_000 + 1_000 * millisecond, &|_| inputs).unwrap();
+                largest_m = largest_m.max(simulation.outputs().tracking_error_m.norm());
+            }
+            assert!(largest_m < 5e-3, "{preset:?}, {before:?} to {after:?}: {largest_m} m");
+        }
+    }
+}
+
+/// By an estimate that is above the true place, a vehicle takes off, lands, and takes off again: the ground that carries it meanwhile is
+/// no lack of mass.
+#[test]
+fn the_ground_below_a_wrong_estimate_is_no_mass() {
+    for (preset, above_m) in [(AirframePreset::Paper, 0.4), (AirframePreset::Iris, 0.8)] {
+        let mut configuration = Configuration::for_airframe(&preset.airframe()).unwrap();
+        configuration.environment.ground_plane = true;
+        let inputs = |time_us: u64| Inputs {
+            reference: PositionReference::goal(
+                [0.0, 0.0, if (6_000_000..14_000_000).contains(&time_us) { 0.5 } else { -2.5 }],
+                0.0,
+            ),
+            armed: !(12_000_000..14_000_000).contains(&time_us) && time_us > 500_000,
             ..Inputs::default()
         };
-        let mut simulation = Simulation::new(&configuration, &inputs).unwrap();
-        simulation.advance_to(10_000_000, &|_| inputs).unwrap();
-        configuration.controllers.kind = ControllerKind::Lmpc;
-        simulation.reconfigure(&configuration).unwrap();
-        let mut largest_m = 0.0_f64;
-        for millisecond in 1..=3_000 {
-            simulation.advance_to(10_000_000 + 1_000 * millisecond, &|_| inputs).unwrap();
-            largest_m = largest_m.max(simulation.outputs().tracking_error_m.norm());
+        let mut simulation = Simulation::new(&configuration, &inputs(0)).unwrap();
+        for sample in 1..=1_400_u64 {
+            let mut body = simulation.plant_state().body;
+            body.position_m.z -= above_m;
+            // As noisy as what an estimator tells.
+            body.velocity_m_s.z += 0.04 * (0.7 * sample as f64).sin();
+            let seen = Inputs { estimate: Some(body), ..inputs(simulation.time_us()) };
+            simulation.advance_to(15_000 * sample, &|_| seen).unwrap();
+            let factor = simulation.control().belief().mass_kg / configuration.airframe.mass_kg;
+            let time_s = 0.015 * sample as f64;
+            assert!((0.8..1.25).contains(&factor), "{preset:?}: {factor} at {time_s} s");
         }
-        assert!(largest_m < 5e-3, "{preset:?}: {largest_m} m");
+        assert!(
+            (simulation.outputs().position_m.z + 2.5 - above_m).abs() < 0.1,
+            "{preset:?} did not take off again"
+        );
     }
 }
 
