@@ -8,14 +8,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::attitude::{Angle, attitude_error, turned};
 use crate::control::activity::ControllerActivity;
+use crate::control::answered::answer;
 use crate::control::attitude_reference::AttitudeReference;
 use crate::control::spin::Spin;
 use crate::design::attitude_design::{AXIS_STATES, AttitudeDesign};
 use crate::design::attitude_limits::RotorRoom;
 use crate::design::capacities::{LEAN_FEW, LEAN_MANY, TURN_FEW, TURN_MANY};
-use crate::design::estimator_design::beyond;
 use crate::design::loop_design::LoopDesign;
-use crate::finite::are_finite;
 use crate::{CascadeDesign, Configuration};
 
 /// Tilt error from which a vehicle is upside down, rad: its reference may lean by the rest.
@@ -164,10 +163,10 @@ impl AttitudeController {
     /// Takes over a vehicle, as if it had been on its reference: the whole error and the whole rate count
     /// from the first sample on. The rotors have held it by an angular acceleration, FRD, rad/s², against what disturbs it.
     pub fn new(attitude: &UnitQuaternion<f64>, held_rad_s2: &Vector3<f64>) -> Self {
-        let (zero, none) = (SVector::zeros(), Vector1::zeros());
+        let (lean, turn) = (held_rad_s2.xy(), Vector1::new(held_rad_s2.z));
         Self {
-            lean: ControllerState::new(zero, held_rad_s2.xy(), Vector2::zeros()).keeping(),
-            turn: ControllerState::new(SVector::zeros(), Vector1::new(held_rad_s2.z), none).keeping(),
+            lean: ControllerState::new(SVector::zeros(), lean, Vector2::zeros()).keeping(),
+            turn: ControllerState::new(SVector::zeros(), turn, Vector1::zeros()).keeping(),
             attitude: *attitude,
             deviation: Deviation::default(),
             integral_rad_s2: Vector3::zeros(),
@@ -251,20 +250,15 @@ impl AttitudeController {
     }
 
     /// The motion since the last sample: by the model, if there is one, else as it was measured. A torque that begins to disturb the
-    /// vehicle is a jump of the acceleration, which no model leads to. Under noise the estimate grows to it over some samples, none of
-    /// whose steps need be sure: what counts is how far it has come from what was answered.
+    /// vehicle is a jump of the acceleration, which no model leads to.
     fn increment(
         &mut self,
         design: &CascadeDesign,
         deviation: &Deviation,
         disturbance_rad_s2: &Vector3<f64>,
     ) -> Deviation {
-        let before = self.answered_rad_s2.unwrap_or(*disturbance_rad_s2);
-        let jump = (disturbance_rad_s2 - before).zip_map(&design.estimator.unsure_rad_s2, beyond);
-        // What leads out of the numbers is not remembered.
-        if are_finite(jump.as_slice()) {
-            self.answered_rad_s2 = Some(before + jump);
-        }
+        let answered_rad_s2 = self.answered_rad_s2.get_or_insert(*disturbance_rad_s2);
+        let jump = answer(answered_rad_s2, disturbance_rad_s2, &design.estimator.unsure_rad_s2);
         let Some(motion) = &design.attitude.motion else { return deviation.since(&self.deviation) };
         let driving = joined(&self.lean.feedback(), &self.turn.feedback()) + disturbance_rad_s2;
         let axes =

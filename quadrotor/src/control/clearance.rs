@@ -12,7 +12,7 @@ const CARRYING_SHARE: f64 = 0.6;
 /// Slower than this, m/s, a vehicle that its rotors do not carry stands.
 const STANDING_M_S: f64 = 0.5;
 
-/// Whether the ground may touch the vehicle, and whether it carries it.
+/// Whether the ground may touch the vehicle.
 ///
 /// A height above a ground plane is as good as the measured one, and an estimate of that may be wrong by more than an arm. A vehicle
 /// that stands while its rotors begin to turn stands on the ground, wherever it takes itself to be.
@@ -20,8 +20,6 @@ const STANDING_M_S: f64 = 0.5;
 pub(crate) struct Clearance {
     /// Where the vehicle stood when its rotors began to turn, until it has left that place: z, NED, m.
     stood_z_m: Option<f64>,
-    /// Whether nothing touches the vehicle, in any attitude.
-    is_clear: bool,
 }
 
 impl Clearance {
@@ -30,31 +28,21 @@ impl Clearance {
         let stands = configuration.environment.ground_plane
             && !carries(configuration, &first.rotor_speed_rad_s)
             && (configuration.sensors.output_feedback || first.motion.velocity_m_s.norm() < STANDING_M_S);
-        Self { stood_z_m: stands.then_some(first.motion.position_m.z), is_clear: false }
+        Self { stood_z_m: stands.then_some(first.motion.position_m.z) }
     }
 
-    /// Takes in a measured z, NED, m, above a ground plane.
-    pub(crate) fn observe(&mut self, configuration: &Configuration, ground_z_m: f64, z_m: f64) {
+    /// Takes in a measured z, NED, m, above a ground plane: whether nothing touches the vehicle there, in any attitude.
+    pub(crate) fn observe(&mut self, configuration: &Configuration, ground_z_m: f64, z_m: f64) -> bool {
         let needed_m = needed_m(&configuration.airframe);
         // Where it sinks, there was no ground.
         self.stood_z_m = self.stood_z_m.filter(|stood_z_m| libm::fabs(stood_z_m - z_m) <= needed_m);
         let is_above = !configuration.environment.ground_plane || ground_z_m - z_m > needed_m;
-        self.is_clear = is_above && self.stood_z_m.is_none();
+        is_above && self.stood_z_m.is_none()
     }
 
     /// All positions are elsewhere: by so much more down, m.
     pub(crate) fn shift(&mut self, by_m: f64) {
         self.stood_z_m = self.stood_z_m.map(|stood_z_m| stood_z_m + by_m);
-    }
-
-    /// Whether nothing touched the vehicle at the last sample, in any attitude.
-    pub(crate) fn is_clear(&self) -> bool {
-        self.is_clear
-    }
-
-    /// Whether the vehicle may stand on the ground with rotors of these speeds, rad/s.
-    pub(crate) fn may_stand(&self, configuration: &Configuration, rotor_speed_rad_s: &[f64; 4]) -> bool {
-        !self.is_clear && !carries(configuration, rotor_speed_rad_s)
     }
 
     /// Whether a flight can have had it: saved states may come from anywhere.
@@ -68,7 +56,7 @@ fn needed_m(airframe: &Airframe) -> f64 {
     airframe.reach_m() + CLEARANCE_M
 }
 
-/// Whether rotors of these speeds carry the vehicle.
+/// Whether rotors of these speeds, rad/s, carry the vehicle: one that is not clear of the ground stands there otherwise.
 pub(crate) fn carries(configuration: &Configuration, rotor_speed_rad_s: &[f64; 4]) -> bool {
     let thrust_n = wrench_of_rotors(&configuration.airframe, rotor_speed_rad_s).thrust_n;
     thrust_n > CARRYING_SHARE * configuration.believed_mass_kg() * GRAVITY_M_S2
@@ -76,7 +64,7 @@ pub(crate) fn carries(configuration: &Configuration, rotor_speed_rad_s: &[f64; 4
 
 #[cfg(test)]
 mod tests {
-    use super::Clearance;
+    use super::{Clearance, carries};
     use crate::{Configuration, Environment, InitialState, Measurement, PlantState};
 
     /// With rotors at rest.
@@ -103,14 +91,11 @@ mod tests {
             (-1.0, [true, true]),
             (-0.99 * needed_m, [false, false]),
         ] {
-            let seen = [&mut standing, &mut flying].map(|clearance| {
-                clearance.observe(&configuration, 0.0, z_m);
-                clearance.is_clear()
-            });
+            let seen =
+                [&mut standing, &mut flying].map(|clearance| clearance.observe(&configuration, 0.0, z_m));
             assert_eq!(seen, expected, "{z_m} m");
         }
-        assert!(flying.may_stand(&configuration, &[0.0; 4]));
-        assert!(!flying.may_stand(&configuration, &first.rotor_speed_rad_s));
+        assert!(!carries(&configuration, &[0.0; 4]) && carries(&configuration, &first.rotor_speed_rad_s));
     }
 
     /// Rotors that are started while the vehicle falls: it is caught below the place where they were started.
@@ -122,15 +107,13 @@ mod tests {
         falling.motion.position_m.z = -20.0;
         let mut clearance = Clearance::take_off(&configuration, &falling);
         for (z_m, expected) in [(-19.9, false), (-15.0, true), (-20.0, true)] {
-            clearance.observe(&configuration, 0.0, z_m);
-            assert_eq!(clearance.is_clear(), expected, "{z_m} m");
+            assert_eq!(clearance.observe(&configuration, 0.0, z_m), expected, "{z_m} m");
         }
     }
 
     #[test]
     fn without_a_ground_plane_nothing_touches() {
         let mut clearance = Clearance::take_off(&Configuration::default(), &first());
-        clearance.observe(&Configuration::default(), 0.0, 0.0);
-        assert!(clearance.is_clear());
+        assert!(clearance.observe(&Configuration::default(), 0.0, 0.0));
     }
 }

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use crate::control::cascade::Cascade;
-use crate::control::clearance::Clearance;
+use crate::control::clearance::{Clearance, carries};
 use crate::control::command_limits::CommandLimits;
 use crate::control::control_inputs::{ControlInputs, ControlLaw, Target};
 use crate::control::estimator::Estimator;
@@ -310,11 +310,9 @@ impl ControlState {
         let takes_over = self.takes_over(inputs);
         self.take_law(configuration, inputs, time_us);
         let takes_off = inputs.armed && !self.armed;
-        let start = if inputs.armed && takes_over {
-            Some(instruments.read_at_takeover(time_us).checked(time_us)?)
-        } else {
-            None
-        };
+        let start = (inputs.armed && takes_over)
+            .then(|| instruments.read_at_takeover(time_us).checked(time_us))
+            .transpose()?;
         if takes_off {
             let first = instruments.read(time_us).checked(time_us)?;
             self.limits = CommandLimits::new(&configuration.limits);
@@ -338,10 +336,10 @@ impl ControlState {
         measurement: &Measurement,
         (due, time_us): (Due, u64),
     ) -> Result<(), ControlError> {
+        let z_m = measurement.motion.position_m.z;
+        let is_clear = due.attitude && self.clearance.observe(&design.configuration, inputs.ground_z_m, z_m);
         let configuration = &if due.attitude {
-            let z_m = measurement.motion.position_m.z;
-            self.clearance.observe(&design.configuration, inputs.ground_z_m, z_m);
-            self.learn(design, &measurement.motion, time_us)
+            self.learn(design, &measurement.motion, (is_clear, time_us))
         } else {
             self.believed(&design.configuration)
         };
@@ -379,7 +377,7 @@ impl ControlState {
             }
         }
         if due.attitude {
-            self.predict(&design.cascade, configuration, &seen, time_us);
+            self.predict(&design.cascade, configuration, &seen, (is_clear, time_us));
         }
         Ok(())
     }
@@ -445,11 +443,11 @@ impl ControlState {
         design: &CascadeDesign,
         configuration: &Configuration,
         seen: &Observation,
-        time_us: u64,
+        (is_clear, time_us): (bool, u64),
     ) {
         let times = (time_us, configuration.controllers.attitude.sample_time_us);
         self.estimator.predict(configuration, design, &seen.measured, &self.command.speed_rad_s, times);
-        if self.clearance.may_stand(configuration, &self.estimator.rotor_speed_rad_s()) {
+        if !is_clear && !carries(configuration, &self.estimator.rotor_speed_rad_s()) {
             self.estimator.stand();
         }
     }

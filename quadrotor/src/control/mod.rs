@@ -2,6 +2,7 @@
 
 pub(crate) mod activity;
 pub(crate) mod altitude_controller;
+pub(crate) mod answered;
 pub(crate) mod attitude_controller;
 pub(crate) mod attitude_reference;
 pub(crate) mod belief;

@@ -3,11 +3,10 @@
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
+use crate::control::answered::answer;
 use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::attitude_loop::AttitudeLoop;
-use crate::design::estimator_design::beyond;
 use crate::design::position_limits::TurnUnderWay;
-use crate::finite::are_finite;
 
 /// How many times more jerk than what has thrown it lately made, a body is brought back from.
 const BRAKED: f64 = 5.0;
@@ -29,13 +28,8 @@ pub(crate) struct Thrown {
 impl Thrown {
     /// By how much more what turns the body beside the rotors has surely changed than was answered, which it then is, m/s⁴.
     pub(crate) fn answer_m_s4(&mut self, seen: &HorizontalMotion) -> Vector2<f64> {
-        let change =
-            (seen.disturbance_m_s4 - self.answered_m_s4).map(|change| beyond(change, seen.unsure_m_s4));
-        // What leads out of the numbers is not remembered.
-        if are_finite(change.as_slice()) {
-            self.answered_m_s4 += change;
-        }
-        change
+        let unsure_m_s4 = Vector2::repeat(seen.unsure_m_s4);
+        answer(&mut self.answered_m_s4, &seen.disturbance_m_s4, &unsure_m_s4)
     }
 
     /// What turned the body beside the rotors at the last sample, m/s⁴.
@@ -109,24 +103,6 @@ mod tests {
             assert!((under_way.snap_m_s4 - expected).abs() < 1e-9, "{under_way:?}");
             assert!((under_way.jerk_m_s3 - expected * delay_s).abs() < 1e-9, "{under_way:?}");
         }
-    }
-
-    /// Noise, and a sample out of the numbers, after which the next one counts as if it had not been.
-    #[test]
-    fn what_is_surely_a_change_is_answered_once() {
-        let seen = |snap_m_s4: f64| HorizontalMotion {
-            disturbance_m_s4: Vector2::new(snap_m_s4, 0.0),
-            unsure_m_s4: 2.0,
-            ..still()
-        };
-        let mut thrown = Thrown::default();
-        for (disturbance, answered) in
-            [(1.5, 0.0), (3.0, 1.0), (5.0, 2.0), (5.0, 0.0), (1.5, 0.0), (0.0, -1.0)]
-        {
-            assert_eq!(thrown.answer_m_s4(&seen(disturbance)).x, answered, "{disturbance} m/s⁴");
-        }
-        thrown.answer_m_s4(&seen(f64::NAN));
-        assert_eq!(thrown.answer_m_s4(&seen(5.0)).x, 1.0);
     }
 
     /// Nothing that turns the body: the limits hold, but for a turn that is under way.

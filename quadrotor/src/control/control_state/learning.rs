@@ -23,7 +23,7 @@ impl ControlState {
         &mut self,
         LoopDesign { configuration, cascade, .. }: &LoopDesign,
         measured: &RigidBody,
-        time_us: u64,
+        (is_clear, time_us): (bool, u64),
     ) -> Configuration {
         let believed = self.believed(configuration);
         if self.law == ControlLaw::RotorLoss {
@@ -38,7 +38,7 @@ impl ControlState {
             } else {
                 MeasuredMotion::Velocity(measured.velocity_m_s)
             },
-            is_clear: self.clearance.is_clear(),
+            is_clear,
             velocity_m_s: seen.velocity_m_s,
             attitude: seen.rotation(),
             rotor_speed_rad_s: &self.estimator.rotor_speed_rad_s(),

@@ -22,8 +22,8 @@ const DEPENDENT: f64 = 1e-6;
 /// seconds, by least squares.
 ///
 /// Whatever the mass is, and the drag along the thrust, and whatever steady force there is beside them, such a plane goes through all of
-/// them. What does not lie in it is another force that changes. The controllers answer that force with thrust, so that it passes for an error of the
-/// mass.
+/// them. What does not lie in it is another force that changes. The controllers answer that force with thrust, so that it passes for an
+/// error of the mass.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ThrustFit {
     /// Averages of t, w and f.
