@@ -192,7 +192,7 @@ impl AttitudeController {
             inertia_kg_m2,
             body_rate_rad_s: seen.body_rate_rad_s,
             rate_error_rad_s: seen.body_rate_rad_s - leaning_and_turning(&in_body, &reference.rate_rad_s),
-            torque_n_m: seen.torque_n_m,
+            torque_n_m: seen.torque_n_m + seen.disturbance_rad_s2.component_mul(&inertia_kg_m2),
             delay_s: lag_s + configuration.controllers.attitude.sample_time_s() / 2.0,
         };
         let [roll_n_m, pitch_n_m, yaw_n_m] = design.mixer.available_torques_n_m(thrust_n.0, thrust_n.1);
@@ -268,11 +268,16 @@ impl AttitudeController {
     }
 
     /// Expresses what is remembered in the body axes of now. A lean stays where it is in the world while the body
-    /// spins about its thrust axis; an integral left behind in turning axes would push sideways.
+    /// spins about its thrust axis; an integral left behind in turning axes would push sideways. What holds the body against a torque
+    /// turns with it.
     fn turn_with_the_body(&mut self, attitude: &UnitQuaternion<f64>) {
         let spun_rad = turned(&self.attitude, attitude).z;
         let turn = Angle::new(-spun_rad);
-        self.lean.turn_feedback(|lean| turn.turned(&Vector3::new(lean.x, lean.y, 0.0)).xy());
+        let held = -self.answered_rad_s2.unwrap_or_default().xy();
+        self.lean.turn_feedback(|lean| {
+            let leaning = lean - held;
+            held + turn.turned(&Vector3::new(leaning.x, leaning.y, 0.0)).xy()
+        });
         self.deviation = self.deviation.turned(turn);
         self.attitude = *attitude;
     }

@@ -121,6 +121,7 @@ impl Cascade {
         let inertia = before.believed_inertia_kg_m2().x / after.believed_inertia_kg_m2().x;
         if inertia != 1.0 {
             self.attitude.believe(inertia);
+            self.position.believe(inertia);
         }
     }
 

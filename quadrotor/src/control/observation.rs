@@ -1,6 +1,6 @@
 //! What the controllers go by: the measurement, or what the Kalman predictor makes of it.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix2, Vector3};
 
 use crate::control::attitude_controller::VehicleRotation;
 use crate::control::estimator::Estimator;
@@ -78,8 +78,9 @@ impl Observation {
             asked_snap_m_s4: turned(asked_rad_s2),
             disturbance_m_s2: self.disturbance_m_s2.xy(),
             disturbance_lag_s: self.disturbance_lag_s,
-            disturbance_m_s4: turned(&self.disturbance_rad_s2),
-            unsure_m_s4: self.unsure_rad_s2.xy().max() * self.lift_m_s2,
+            disturbance_rad_s2: self.disturbance_rad_s2.xy(),
+            unsure_rad_s2: self.unsure_rad_s2.xy(),
+            snap_by_turning: Matrix2::from_columns(&[turned(&Vector3::x()), turned(&Vector3::y())]),
         }
     }
 

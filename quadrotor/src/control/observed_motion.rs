@@ -143,7 +143,7 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
     }
 
     /// Whether a sample has been seen.
-    pub(crate) fn has_begun(&self) -> bool {
+    fn has_begun(&self) -> bool {
         self.deviation.is_some()
     }
 

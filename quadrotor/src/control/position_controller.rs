@@ -82,7 +82,8 @@ impl PositionController {
         let zero = Vector2::zeros();
         // The rotors hold the body against torques that disturb it: what turns it is both together. A law that foresees limits would
         // take the rotors' part alone for a tilt that is accelerated for ever. A regulator goes by how it changes.
-        let turning = if law.regulator().is_some() { zero } else { seen.disturbance_m_s4 };
+        let sees_torques = law.regulator().is_none();
+        let turning = if sees_torques { seen.disturbance_m_s4() } else { zero };
         let measured = by_axis([
             seen.position_m,
             seen.velocity_m_s,
@@ -102,18 +103,19 @@ impl PositionController {
         let [jerk_jump, snap_jump] = reference.jumps_since(&self.reference);
         let [seen_jerk_jump, seen_snap_jump] =
             if reference.is_bent { [jerk_jump * BENT, zero] } else { [jerk_jump, snap_jump] };
+        let turned = self.thrown.turned_m_s4(seen, sees_torques);
+        let before = self.controller.measured() + by_axis([zero, zero, zero, zero, turned, turned]);
         let motion = MotionSample {
             deviation,
-            change: measured - self.before(&turning, (seen, law)) - motion_of(reference, &self.reference),
+            change: measured - before - motion_of(reference, &self.reference),
             feedback: self.controller.feedback(),
             jump: by_axis([zero, zero, zero, seen_jerk_jump, seen_snap_jump, zero]),
         };
         let sample_time_s = configuration.controllers.position.sample_time_s();
-        let thrown = self.thrown.answer_m_s4(seen);
+        let (under_way, thrown) =
+            self.thrown.turn_under_way(seen, &turning, (design.attitude_loop(), sample_time_s), &jerk_jump);
         let (lasting_increment, passing) =
             self.increments(design, &motion, (sample_time_s, seen.disturbance_lag_s), &thrown);
-        let under_way =
-            self.thrown.turn_under_way(seen, &turning, (design.attitude_loop(), sample_time_s), &jerk_jump);
         let (error_m, disturbance_m_s2) = (turn.vector(&error), turn.vector(&seen.disturbance_m_s2));
         let way = reference.is_at_rest().then(|| BrakingWay {
             // A law that sees deviations has its goal at zero.
@@ -143,24 +145,6 @@ impl PositionController {
         let applied = step.input.cap_magnitude(present_m_s2);
         self.controller.apply(&applied);
         (applied, ControllerActivity::of(&step, &step.input, &applied))
-    }
-
-    /// The state at the last sample, seen as it is now, when the law sees so much of what disturbs the vehicle, m/s⁴. Before the first one
-    /// the rotors have held the vehicle against that; a law that foresees limits has seen it, and a regulator that takes over does not.
-    fn before(
-        &self,
-        turning_m_s4: &Vector2<f64>,
-        (seen, law): (&HorizontalMotion, &PositionLaw),
-    ) -> SVector<f64, POSITION_STATES> {
-        let zero = Vector2::zeros();
-        let unseen_m_s4 = if !self.observed.has_begun() {
-            turning_m_s4 - seen.disturbance_m_s4
-        } else if law.regulator().is_some() {
-            -self.thrown.turning_m_s4()
-        } else {
-            zero
-        };
-        self.controller.measured() + by_axis([zero, zero, zero, zero, unseen_m_s4, unseen_m_s4])
     }
 
     /// Before the first sample of a vehicle that deviates at a velocity, m/s: see [`ObservedMotion::first_feedback`].
@@ -194,7 +178,7 @@ impl PositionController {
     ) -> (SVector<f64, POSITION_STATES>, SVector<f64, POSITION_STATES>) {
         let model = design.position.motion.as_ref();
         let zero = Vector2::zeros();
-        let thrown = if model.is_some() && self.observed.has_begun() { *thrown } else { zero };
+        let thrown = if model.is_some() { *thrown } else { zero };
         let increment = self.observed.step(model, motion, times);
         let foresees = lag_s > 0.0 && design.position.law.regulator().is_none();
         let passing = match model {
@@ -235,6 +219,11 @@ impl PositionController {
         self.observed.believe(&by_axis([zero, zero, -more, zero, zero, zero]));
     }
 
+    /// Goes on under a belief in another inertia: `ratio` is the one before over the one now.
+    pub(crate) fn believe(&mut self, ratio: f64) {
+        self.thrown.believe(ratio);
+    }
+
     /// Expresses the accelerations that were measured and applied last in other terms.
     pub(crate) fn translate(&mut self, term: impl Fn(&Vector2<f64>) -> Vector2<f64>) {
         let applied = term(&self.controller.applied());
@@ -245,6 +234,7 @@ impl PositionController {
                 if derivative < 2 { value } else { term(&value) }
             }))
         };
+        self.thrown.translate(&term);
         let before = self.controller.measured();
         self.controller.turn(measured, Vector2::clone_owned);
         self.controller.apply(&applied);

@@ -17,7 +17,7 @@ pub(crate) struct Spin {
     pub(crate) body_rate_rad_s: Vector3<f64>,
     /// That less the rate of the reference, rad/s.
     pub(crate) rate_error_rad_s: Vector3<f64>,
-    /// Torque that the rotors make, N·m.
+    /// Torque that turns it, N·m: the rotors' together with what disturbs it. What holds the body against that turns with the body.
     pub(crate) torque_n_m: Vector3<f64>,
     /// Delay of a commanded torque, s: the rotors' lag and half a sample.
     pub(crate) delay_s: f64,

@@ -1,6 +1,6 @@
 //! What the translational controllers know of the vehicle's motion, measured or estimated.
 
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 
 /// Motion north and east.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,10 +21,19 @@ pub(crate) struct HorizontalMotion {
     pub(crate) disturbance_m_s2: Vector2<f64>,
     /// How far that lags behind what it is, s.
     pub(crate) disturbance_lag_s: f64,
-    /// Snap by the estimated angular acceleration that torques do not explain, m/s⁴.
-    pub(crate) disturbance_m_s4: Vector2<f64>,
-    /// By so much that changes under noise alone, m/s⁴.
-    pub(crate) unsure_m_s4: f64,
+    /// Estimated angular acceleration about roll and pitch that torques do not explain, rad/s².
+    pub(crate) disturbance_rad_s2: Vector2<f64>,
+    /// By so much that changes under noise alone, rad/s².
+    pub(crate) unsure_rad_s2: Vector2<f64>,
+    /// Snap by such an angular acceleration, m/s⁴ per rad/s²: it turns with the body.
+    pub(crate) snap_by_turning: Matrix2<f64>,
+}
+
+impl HorizontalMotion {
+    /// Snap by what turns the body beside its rotors, m/s⁴.
+    pub(crate) fn disturbance_m_s4(&self) -> Vector2<f64> {
+        self.snap_by_turning * self.disturbance_rad_s2
+    }
 }
 
 /// Motion down.

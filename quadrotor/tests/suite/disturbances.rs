@@ -111,6 +111,40 @@ fn a_torque_is_held_close_to_the_ground() {
     }
 }
 
+/// A weight on the vehicle turns with it, and so does what the rotors hold against it: no law takes either for motion. A Crazyflie whose
+/// heading turned went round in circles of up to 6 m.
+#[test]
+fn a_weight_beside_the_centre_turns_with_the_heading() {
+    let kinds = [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr];
+    for preset in AirframePreset::ALL {
+        for (kind, turning_rad_s) in kinds.into_iter().flat_map(|kind| [0.8, -3.0].map(|rate| (kind, rate))) {
+            for output_feedback in [false, true] {
+                let mut configuration = raw(preset, kind);
+                configuration.limits.yaw_rate_rad_s = 3.0;
+                configuration.sensors.output_feedback = output_feedback;
+                let airframe = &mut configuration.airframe;
+                airframe.centre_of_gravity_m = [0.04, -0.03, 0.0].map(|part| part * airframe.arm_length_m);
+                let inputs = |time_us: u64| {
+                    let turned_s = (time_us as f64 / 1e6 - 1.0).max(0.0);
+                    let yaw_rate_rad_s = if turned_s > 0.0 { turning_rad_s } else { 0.0 };
+                    let reference = PositionReference::goal([0.0; 3], turning_rad_s * turned_s);
+                    Inputs {
+                        reference: PositionReference { yaw_rate_rad_s, ..reference },
+                        ..Inputs::default()
+                    }
+                };
+                let mut largest_m = 0.0_f64;
+                fly(&configuration, &inputs, 8.0, |outputs| {
+                    largest_m = largest_m.max(outputs.position_m.norm());
+                });
+                let told = format!("{preset:?} {kind:?} {turning_rad_s} rad/s {output_feedback}");
+                println!("{told}: {largest_m:.5} m");
+                assert!(largest_m < 5e-3, "{told}: {largest_m} m");
+            }
+        }
+    }
+}
+
 /// A torque that one law has held for long begins for none of those that take over.
 #[test]
 fn a_torque_that_is_held_does_not_begin_when_another_law_takes_over() {
