@@ -15,7 +15,7 @@ use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::braking_way::BrakingWay;
 use crate::design::capacities::{POSITION_FEW, POSITION_MANY};
 use crate::design::position_limits::{
-    AXIS_STATES, Asked, POSITION_SIGNALS, POSITION_STATES, closing_share, horizon_m, in_sight,
+    AXIS_STATES, Asked, POSITION_SIGNALS, POSITION_STATES, TurnUnderWay, closing_share, horizon_m, in_sight,
     planned_horizon_m, position_bounds,
 };
 use crate::design::translation_design::{PositionLaw, position_bandwidth_rad_s};
@@ -49,6 +49,18 @@ pub struct PositionController {
     thrown: Thrown,
 }
 
+/// How a vehicle has moved until a sample.
+struct Motion {
+    measured: SVector<f64, POSITION_STATES>,
+    /// From the reference.
+    deviation: SVector<f64, POSITION_STATES>,
+    /// What of the increment limits go by.
+    lasting: SVector<f64, POSITION_STATES>,
+    /// What of it feedback alone answers.
+    passing: SVector<f64, POSITION_STATES>,
+    under_way: TurnUnderWay,
+}
+
 impl PositionController {
     /// Takes over a vehicle at x, y, m. Its whole velocity is damped from the first sample on: a law that goes by increments takes it to
     /// have been at rest there, one that goes by a model to have been damped so far.
@@ -79,44 +91,16 @@ impl PositionController {
         (present_m_s2, lasting): (f64, LargestLean),
     ) -> (Vector2<f64>, ControllerActivity) {
         let law = &design.position.law;
-        let zero = Vector2::zeros();
-        // The rotors hold the body against torques that disturb it: what turns it is both together. A law that foresees limits would
-        // take the rotors' part alone for a tilt that is accelerated for ever. A regulator goes by how it changes.
-        let sees_torques = law.regulator().is_none();
-        let turning = if sees_torques { seen.disturbance_m_s4() } else { zero };
-        let measured = by_axis([
-            seen.position_m,
-            seen.velocity_m_s,
-            seen.acceleration_m_s2,
-            seen.jerk_m_s3,
-            seen.snap_m_s4 + turning,
-            seen.asked_snap_m_s4 + turning,
-        ]);
         let error = planned_error_m(configuration, design, seen, reference, lasting.commanded_m_s2);
         // The loop is the same in all horizontal directions. Along the error, no corner of a polygon of limits is nearer to the goal
         // than the way to it.
         let turn = Turn::along(&error, design.position_is_isotropic);
         let mut room = [0.0; POSITION_SIGNALS];
         let (moved, asked) = foreseen(law, &turn, reference, (ahead, asked), &mut room);
-        let deviation = with_position(&(measured - state_of(reference)), &error);
         self.take_over(design, &(seen.velocity_m_s - reference.velocity), reference, present_m_s2);
-        let [jerk_jump, snap_jump] = reference.jumps_since(&self.reference);
-        let [seen_jerk_jump, seen_snap_jump] =
-            if reference.is_bent { [jerk_jump * BENT, zero] } else { [jerk_jump, snap_jump] };
-        let turned = self.thrown.turned_m_s4(seen, sees_torques);
-        let before = self.controller.measured() + by_axis([zero, zero, zero, zero, turned, turned]);
-        let motion = MotionSample {
-            deviation,
-            change: measured - before - motion_of(reference, &self.reference),
-            feedback: self.controller.feedback(),
-            jump: by_axis([zero, zero, zero, seen_jerk_jump, seen_snap_jump, zero]),
-        };
-        let sample_time_s = configuration.controllers.position.sample_time_s();
-        let (under_way, thrown) =
-            self.thrown.turn_under_way(seen, &turning, (design.attitude_loop(), sample_time_s), &jerk_jump);
-        let (lasting_increment, passing) =
-            self.increments(design, &motion, (sample_time_s, seen.disturbance_lag_s), &thrown);
+        let motion = self.motion(configuration, design, seen, (reference, &error));
         let (error_m, disturbance_m_s2) = (turn.vector(&error), turn.vector(&seen.disturbance_m_s2));
+        let zero = Vector2::zeros();
         let way = reference.is_at_rest().then(|| BrakingWay {
             // A law that sees deviations has its goal at zero.
             goal_m: if law.sees_deviation_alone() { zero } else { turn.vector(&reference.position) },
@@ -126,13 +110,13 @@ impl PositionController {
             delay_s: BrakingWay::delay_s(&configuration.limits),
         });
         let lean = (present_m_s2, lasting_m_s2(reference, &lasting, &asked));
-        let bounds = position_bounds(&configuration.limits, lean, &asked, under_way);
+        let bounds = position_bounds(&configuration.limits, lean, &asked, motion.under_way);
         let sample = Sample {
-            measured: turn.state(&measured),
-            increment: turn.state(&lasting_increment),
+            measured: turn.state(&motion.measured),
+            increment: turn.state(&motion.lasting),
             // What disturbs the vehicle accelerates it, too.
             deviation: turn
-                .state(&(deviation + by_axis([zero, zero, seen.disturbance_m_s2, zero, zero, zero]))),
+                .state(&(motion.deviation + by_axis([zero, zero, seen.disturbance_m_s2, zero, zero, zero]))),
             error: error_m,
             input_reference: turn.vector(&reference.thrust),
             disturbance: disturbance_m_s2,
@@ -140,11 +124,52 @@ impl PositionController {
             moved: moved.unwrap_or_default(),
             ..Sample::default()
         };
-        let step = self.step_along(law, &turn, &sample, &turn.state(&passing));
+        let step = self.step_along(law, &turn, &sample, &turn.state(&motion.passing));
         self.reference = *reference;
         let applied = step.input.cap_magnitude(present_m_s2);
         self.controller.apply(&applied);
         (applied, ControllerActivity::of(&step, &step.input, &applied))
+    }
+
+    /// How the vehicle has moved until a sample, beside a reference and by an error of its position, m.
+    fn motion(
+        &mut self,
+        configuration: &Configuration,
+        design: &CascadeDesign,
+        seen: &HorizontalMotion,
+        (reference, error_m): (&ReferenceMotion<2>, &Vector2<f64>),
+    ) -> Motion {
+        let zero = Vector2::zeros();
+        // The rotors hold the body against torques that disturb it: what turns it is both together. A law that foresees limits would
+        // take the rotors' part alone for a tilt that is accelerated for ever. A regulator goes by how it changes.
+        let sees_torques = design.position.law.regulator().is_none();
+        let turning = if sees_torques { seen.disturbance_m_s4() } else { zero };
+        let measured = by_axis([
+            seen.position_m,
+            seen.velocity_m_s,
+            seen.acceleration_m_s2,
+            seen.jerk_m_s3,
+            seen.snap_m_s4 + turning,
+            seen.asked_snap_m_s4 + turning,
+        ]);
+        let deviation = with_position(&(measured - state_of(reference)), error_m);
+        let [jerk_jump, snap_jump] = reference.jumps_since(&self.reference);
+        let [seen_jerk_jump, seen_snap_jump] =
+            if reference.is_bent { [jerk_jump * BENT, zero] } else { [jerk_jump, snap_jump] };
+        let turned = self.thrown.turned_m_s4(seen, sees_torques);
+        let before = self.controller.measured() + by_axis([zero, zero, zero, zero, turned, turned]);
+        let since = MotionSample {
+            deviation,
+            change: measured - before - motion_of(reference, &self.reference),
+            feedback: self.controller.feedback(),
+            jump: by_axis([zero, zero, zero, seen_jerk_jump, seen_snap_jump, zero]),
+        };
+        let sample_time_s = configuration.controllers.position.sample_time_s();
+        let (under_way, thrown) =
+            self.thrown.turn_under_way(seen, &turning, (design.attitude_loop(), sample_time_s), &jerk_jump);
+        let [lasting, passing] =
+            self.increments(design, &since, (sample_time_s, seen.disturbance_lag_s), &thrown);
+        Motion { measured, deviation, lasting, passing, under_way }
     }
 
     /// Before the first sample of a vehicle that deviates at a velocity, m/s: see [`ObservedMotion::first_feedback`].
@@ -175,7 +200,7 @@ impl PositionController {
         motion: &MotionSample<POSITION_STATES, 2>,
         times @ (_, lag_s): (f64, f64),
         thrown: &Vector2<f64>,
-    ) -> (SVector<f64, POSITION_STATES>, SVector<f64, POSITION_STATES>) {
+    ) -> [SVector<f64, POSITION_STATES>; 2] {
         let model = design.position.motion.as_ref();
         let zero = Vector2::zeros();
         let thrown = if model.is_some() { *thrown } else { zero };
@@ -185,7 +210,7 @@ impl PositionController {
             Some(model) if foresees => self.observed.passing(model),
             _ => SVector::zeros(),
         };
-        (increment - passing, passing + by_axis([zero, zero, zero, zero, thrown, zero]))
+        [increment - passing, passing + by_axis([zero, zero, zero, zero, thrown, zero])]
     }
 
     /// A step of the law for a sample in turned axes, and its answer to what of the motion passes; its input is in those of the world.
