@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::control::activity::ControllerActivity;
 use crate::control::governor::{Governor, integral_rate};
-use crate::control::observed_motion::{MotionSample, ObservedMotion};
+use crate::control::observed_motion::{LASTING_S, MotionSample, ObservedMotion};
 use crate::control::vehicle_motion::VerticalMotion;
 use crate::design::altitude_limits::altitude_bounds;
 use crate::design::capacities::{ALTITUDE_FEW, ALTITUDE_MANY};
@@ -63,10 +63,17 @@ impl AltitudeController {
             jump: Vector3::zeros(),
         };
         let sample_time_s = configuration.controllers.altitude.sample_time_s();
-        let increment = self.observed.step(design.altitude.motion.as_ref(), &motion, (sample_time_s, 0.0));
+        let model = design.altitude.motion.as_ref();
+        // One that is estimated from noise or from places alone comes late enough.
+        let lag_s = if design.estimator.disturbance_lag_s > 0.0 { 0.0 } else { LASTING_S };
+        let increment = self.observed.step(model, &motion, (sample_time_s, lag_s));
+        let passing = match model {
+            Some(model) if law.plans_increments() => self.observed.passing(model),
+            _ => Vector3::zeros(),
+        };
         let sample = Sample {
             measured,
-            increment,
+            increment: increment - passing,
             // What disturbs the vehicle accelerates it, too.
             deviation: deviation + Vector3::z() * seen.disturbance_m_s2,
             error,
@@ -77,13 +84,14 @@ impl AltitudeController {
         };
         let step = law.step(&mut self.controller, &sample);
         self.reference = *reference;
-        let wanted = step.input;
+        let wanted = step.input + law.answer_to(&passing);
         let applied = Vector1::new(wanted.x.clamp(range.0, range.1));
         self.controller.apply(&applied);
         (applied.x, ControllerActivity::of(&step, &wanted, &applied))
     }
 
-    /// Before the first sample of a vehicle that deviates at a velocity, m/s: see [`ObservedMotion::first_feedback`].
+    /// Before the first sample of a vehicle that deviates at a velocity, m/s: see [`ObservedMotion::first_feedback`]. Accelerations do not
+    /// count: they follow from a mass that is only believed in.
     fn take_over(
         &mut self,
         design: &CascadeDesign,
@@ -93,9 +101,8 @@ impl AltitudeController {
     ) {
         let (law, model) = (&design.altitude.law, design.altitude.motion.as_ref());
         let answer = |increment: &_| law.answer_to(increment);
-        let Some(feedback) = self.observed.first_feedback(model, answer, &Vector1::new(velocity_m_s)) else {
-            return;
-        };
+        let moving = Vector3::new(0.0, velocity_m_s, 0.0);
+        let Some(feedback) = self.observed.first_feedback(model, answer, &moving) else { return };
         let applied = Vector1::new((input_reference.x + feedback.x).clamp(least, most));
         self.controller.turn_feedback(|_| applied - input_reference);
     }

@@ -52,10 +52,10 @@ impl AskedTorque {
     }
 }
 
-/// Share of what the rotors can do about yaw that an estimated disturbance may take. A plan ends at rest against it; one that the rotors
+/// Share of what the rotors can do that an estimated disturbance may take. A plan ends at rest against it; one that the rotors
 /// cannot hold has no such end, and the limit would be broken for it at once. From 1 mrad of attitude noise on the estimate's own noise
 /// comes to that: the heading wandered by 8 mrad, where it should by 0.2 mrad.
-const HELD_TURN_SHARE: f64 = 0.8;
+const HELD_SHARE: f64 = 0.8;
 
 /// State of the attitude controller.
 ///
@@ -134,6 +134,8 @@ impl Deviation {
 struct Seen {
     deviation: Deviation,
     increment: Deviation,
+    /// What of the increment feedback alone answers.
+    passing: Deviation,
     input_reference: Vector3<f64>,
     disturbance: Vector3<f64>,
 }
@@ -199,7 +201,7 @@ impl AttitudeController {
         let most_n_m = roll_n_m.min(pitch_n_m);
         let beside = spin.beside(most_n_m);
         let most_rad_s2 = [most_n_m / inertia_kg_m2.xy().max(), yaw_n_m / inertia_kg_m2.z];
-        let disturbance_rad_s2 = holdable(&seen.disturbance_rad_s2, most_rad_s2[1]);
+        let disturbance_rad_s2 = holdable(&seen.disturbance_rad_s2, most_rad_s2);
         let reference_acceleration = leaning_and_turning(&in_body, &reference.acceleration_rad_s2);
         let reached = (seen.torque_n_m - beside.made_n_m).component_div(&inertia_kg_m2);
         let error_rad =
@@ -212,9 +214,11 @@ impl AttitudeController {
             acceleration_rad_s2: reached + disturbance_rad_s2 - reference_acceleration,
         };
         let deviation = deviation.in_sight(design.attitude.sight_s, most_rad_s2);
+        let (increment, passing) = self.increments(design, &deviation, &disturbance_rad_s2);
         let told = Seen {
             deviation,
-            increment: self.increment(design, &deviation, &disturbance_rad_s2),
+            increment,
+            passing,
             // A step of the reference's rate is motion of the error, which moves an incremental law at once.
             input_reference: if design.attitude.is_incremental() {
                 Vector3::zeros()
@@ -241,30 +245,38 @@ impl AttitudeController {
         told: &Seen,
         room: &RotorRoom,
     ) -> (Vector3<f64>, ControllerActivity) {
-        let lean = design.lean.step(&mut self.lean, &told.sample(0, &room.lean_bounds()));
+        let mut lean = design.lean.step(&mut self.lean, &told.sample(0, &room.lean_bounds()));
+        lean.input += room.lean_beside(&lean.input, &design.lean.answer_to(&told.passing.states(0)));
         let turn_bounds = room.turn_bounds(&lean.input, told.input_reference.z);
-        let turn = design.turn.step(&mut self.turn, &told.sample(2, &turn_bounds));
+        let mut turn = design.turn.step(&mut self.turn, &told.sample(2, &turn_bounds));
+        turn.input += design.turn.answer_to(&told.passing.states(2));
         self.deviation = told.deviation;
         self.integral_rad_s2 = joined(&lean.integral, &turn.integral);
         (joined(&lean.input, &turn.input), activity(&lean, &turn))
     }
 
-    /// The motion since the last sample: by the model, if there is one, else as it was measured. A torque that begins to disturb the
-    /// vehicle is a jump of the acceleration, which no model leads to.
-    fn increment(
+    /// The motion since the last sample: by the model, if there is one, else as it was measured. And what of it feedback alone answers: a
+    /// torque that begins to disturb the vehicle is a jump of the acceleration, which no model leads to, and a plan would take it to go on.
+    fn increments(
         &mut self,
         design: &CascadeDesign,
         deviation: &Deviation,
         disturbance_rad_s2: &Vector3<f64>,
-    ) -> Deviation {
+    ) -> (Deviation, Deviation) {
         let answered_rad_s2 = self.answered_rad_s2.get_or_insert(*disturbance_rad_s2);
-        let jump = answer(answered_rad_s2, disturbance_rad_s2, &design.estimator.unsure_rad_s2);
-        let Some(motion) = &design.attitude.motion else { return deviation.since(&self.deviation) };
+        let jump_rad_s2 = answer(answered_rad_s2, disturbance_rad_s2, &design.estimator.unsure_rad_s2);
+        let none = Deviation::default();
+        let Some(motion) = &design.attitude.motion else { return (deviation.since(&self.deviation), none) };
         let driving = joined(&self.lean.feedback(), &self.turn.feedback()) + disturbance_rad_s2;
         let axes =
             [0, 1, 2].map(|axis| motion.that_led_to(&deviation.states(axis), &Vector1::new(driving[axis])));
         let of = |state: usize| Vector3::from(axes.map(|axis| axis[state]));
-        Deviation { angle_rad: of(0), rate_rad_s: of(1), acceleration_rad_s2: of(2) + jump }
+        let led = Deviation { angle_rad: of(0), rate_rad_s: of(1), acceleration_rad_s2: of(2) };
+        if design.attitude.lean.plans_increments() {
+            (led, Deviation { acceleration_rad_s2: jump_rad_s2, ..none })
+        } else {
+            (Deviation { acceleration_rad_s2: of(2) + jump_rad_s2, ..led }, none)
+        }
     }
 
     /// Expresses what is remembered in the body axes of now. A lean stays where it is in the world while the body
@@ -337,12 +349,10 @@ fn leaning_and_turning(in_body: &UnitQuaternion<f64>, motion: &Vector3<f64>) -> 
     in_body * Vector3::new(motion.x, motion.y, 0.0) + Vector3::z() * motion.z
 }
 
-/// A disturbance, rad/s², whose part about yaw is no more than a share of what the rotors can do about it, `turn_rad_s2`.
-fn holdable(disturbance_rad_s2: &Vector3<f64>, turn_rad_s2: f64) -> Vector3<f64> {
-    let held_rad_s2 = HELD_TURN_SHARE * turn_rad_s2.max(0.0);
-    let mut holdable_rad_s2 = *disturbance_rad_s2;
-    holdable_rad_s2.z = holdable_rad_s2.z.clamp(-held_rad_s2, held_rad_s2);
-    holdable_rad_s2
+/// A disturbance, rad/s², whose parts are no more than a share of what the rotors can do about lean and turn, rad/s².
+fn holdable(disturbance_rad_s2: &Vector3<f64>, [lean_rad_s2, turn_rad_s2]: [f64; 2]) -> Vector3<f64> {
+    let most = [lean_rad_s2, lean_rad_s2, turn_rad_s2].map(|most| HELD_SHARE * most.max(0.0));
+    disturbance_rad_s2.zip_map(&Vector3::from(most), |part, most| part.clamp(-most, most))
 }
 
 /// An error in which a vehicle that is upside down goes on turning as it does, rad: the shortest way changes its direction with every

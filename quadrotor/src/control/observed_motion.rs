@@ -8,6 +8,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::finite::are_finite;
 
+/// A disturbance that is found at once lasts when it has done so for about as long, s. Until then feedback answers it, and limits do not go by it: to
+/// a plan that took a force that swings to last, the swings to one side would leave no room.
+pub(crate) const LASTING_S: f64 = 0.12;
+
 /// A model of N states and P inputs, channel by channel: the output, its rate, and others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct MotionModel<const N: usize, const P: usize> {
@@ -125,25 +129,24 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
         Self { deviation: Some(deviation), disturbance, lasting: disturbance }
     }
 
-    /// What a law that goes by a model begins with where it takes over a vehicle whose outputs deviate at a rate: the feedback by which it
-    /// would have damped that so far. `None` without a model, and once a sample has been seen. Accelerations do not count: they follow from
-    /// a mass that is only believed in.
+    /// What a law that goes by a model begins with where it takes over a vehicle that moves beside its reference: the feedback by which it
+    /// would have damped that so far. `None` without a model, and once a sample has been seen.
     pub(crate) fn first_feedback(
         &self,
         model: Option<&MotionModel<N, P>>,
         answer: impl Fn(&SVector<f64, N>) -> SVector<f64, P>,
-        rate: &SVector<f64, P>,
+        deviation: &SVector<f64, N>,
     ) -> Option<SVector<f64, P>> {
         let model = model.filter(|_| !self.has_begun())?;
-        let mut moving = SVector::zeros();
+        let mut moving = *deviation;
         for channel in 0..P {
-            moving[N / P * channel + 1] = rate[channel];
+            moving[N / P * channel] = 0.0;
         }
         Some(model.feedback_before(answer, &moving))
     }
 
     /// Whether a sample has been seen.
-    fn has_begun(&self) -> bool {
+    pub(crate) fn has_begun(&self) -> bool {
         self.deviation.is_some()
     }
 
@@ -286,7 +289,7 @@ mod tests {
         };
         let times = (SAMPLE_TIME_S, 0.0);
         let begins = |observed: &ObservedMotion<3, 1>| {
-            observed.first_feedback(Some(&model), |_| Vector1::zeros(), &Vector1::zeros()).is_some()
+            observed.first_feedback(Some(&model), |_| Vector1::zeros(), &Vector3::zeros()).is_some()
         };
         assert!(begins(&observed));
         // Another mass says nothing of a motion that nobody has seen.

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::control::activity::ControllerActivity;
 use crate::control::governor::{Governor, integral_rate};
 use crate::control::largest_lean::LargestLean;
-use crate::control::observed_motion::{MotionSample, ObservedMotion};
+use crate::control::observed_motion::{LASTING_S, MotionSample, ObservedMotion};
 use crate::control::thrown::Thrown;
 use crate::control::vehicle_motion::HorizontalMotion;
 use crate::design::braking_way::BrakingWay;
@@ -52,7 +52,7 @@ pub struct PositionController {
 /// How a vehicle has moved until a sample.
 struct Motion {
     measured: SVector<f64, POSITION_STATES>,
-    /// From the reference.
+    /// From the reference, with what disturbs the vehicle.
     deviation: SVector<f64, POSITION_STATES>,
     /// What of the increment limits go by.
     lasting: SVector<f64, POSITION_STATES>,
@@ -97,8 +97,7 @@ impl PositionController {
         let turn = Turn::along(&error, design.position_is_isotropic);
         let mut room = [0.0; POSITION_SIGNALS];
         let (moved, asked) = foreseen(law, &turn, reference, (ahead, asked), &mut room);
-        self.take_over(design, &(seen.velocity_m_s - reference.velocity), reference, present_m_s2);
-        let motion = self.motion(configuration, design, seen, (reference, &error));
+        let motion = self.motion(configuration, design, seen, (reference, &error), present_m_s2);
         let (error_m, disturbance_m_s2) = (turn.vector(&error), turn.vector(&seen.disturbance_m_s2));
         let zero = Vector2::zeros();
         let way = reference.is_at_rest().then(|| BrakingWay {
@@ -114,9 +113,7 @@ impl PositionController {
         let sample = Sample {
             measured: turn.state(&motion.measured),
             increment: turn.state(&motion.lasting),
-            // What disturbs the vehicle accelerates it, too.
-            deviation: turn
-                .state(&(motion.deviation + by_axis([zero, zero, seen.disturbance_m_s2, zero, zero, zero]))),
+            deviation: turn.state(&motion.deviation),
             error: error_m,
             input_reference: turn.vector(&reference.thrust),
             disturbance: disturbance_m_s2,
@@ -131,13 +128,15 @@ impl PositionController {
         (applied, ControllerActivity::of(&step, &step.input, &applied))
     }
 
-    /// How the vehicle has moved until a sample, beside a reference and by an error of its position, m.
+    /// How the vehicle has moved until a sample, beside a reference and by an error of its position, m, where at most an acceleration of
+    /// `present_m_s2` can have been commanded.
     fn motion(
         &mut self,
         configuration: &Configuration,
         design: &CascadeDesign,
         seen: &HorizontalMotion,
         (reference, error_m): (&ReferenceMotion<2>, &Vector2<f64>),
+        present_m_s2: f64,
     ) -> Motion {
         let zero = Vector2::zeros();
         // The rotors hold the body against torques that disturb it: what turns it is both together. A law that foresees limits would
@@ -153,6 +152,9 @@ impl PositionController {
             seen.asked_snap_m_s4 + turning,
         ]);
         let deviation = with_position(&(measured - state_of(reference)), error_m);
+        // What disturbs the vehicle accelerates it, too.
+        let disturbed = deviation + by_axis([zero, zero, seen.disturbance_m_s2, zero, zero, zero]);
+        self.take_over(design, seen, (&disturbed, reference), present_m_s2);
         let [jerk_jump, snap_jump] = reference.jumps_since(&self.reference);
         let [seen_jerk_jump, seen_snap_jump] =
             if reference.is_bent { [jerk_jump * BENT, zero] } else { [jerk_jump, snap_jump] };
@@ -168,27 +170,35 @@ impl PositionController {
         let (under_way, thrown) =
             self.thrown.turn_under_way(seen, &turning, (design.attitude_loop(), sample_time_s), &jerk_jump);
         let [lasting, passing] =
-            self.increments(design, &since, (sample_time_s, seen.disturbance_lag_s), &thrown);
-        Motion { measured, deviation, lasting, passing, under_way }
+            self.increments(design, &since, (sample_time_s, seen.disturbance_lag_s.max(LASTING_S)), &thrown);
+        Motion { measured, deviation: disturbed, lasting, passing, under_way }
     }
 
-    /// Before the first sample of a vehicle that deviates at a velocity, m/s: see [`ObservedMotion::first_feedback`].
+    /// Before the first sample of a vehicle that moves beside its reference: see [`ObservedMotion::first_feedback`] and
+    /// [`Thrown::taken_over`].
     fn take_over(
         &mut self,
         design: &CascadeDesign,
-        velocity_m_s: &Vector2<f64>,
-        reference: &ReferenceMotion<2>,
+        seen: &HorizontalMotion,
+        (deviation, reference): (&SVector<f64, POSITION_STATES>, &ReferenceMotion<2>),
         present_m_s2: f64,
     ) {
-        // Nothing is damped, and nothing of no length need be cut off, which would divide by it.
-        if *velocity_m_s == Vector2::zeros() {
+        if self.observed.has_begun() {
             return;
         }
+        // What the reference asks of a vehicle that does not move yet is a command.
+        let own = [seen.acceleration_m_s2 + seen.disturbance_m_s2, seen.jerk_m_s3].map(|own| own.norm());
+        let beside = [2, 3].map(|of| Vector2::new(deviation[of], deviation[AXIS_STATES + of]).norm());
+        self.thrown =
+            Thrown::taken_over(own[0].min(beside[0]), own[1].min(beside[1]), design.attitude_loop());
         let (law, model) = (&design.position.law, design.position.motion.as_ref());
         let answer = |increment: &_| law.answer_to(increment);
-        let Some(feedback) = self.observed.first_feedback(model, answer, velocity_m_s) else { return };
-        let applied = (reference.thrust + feedback).cap_magnitude(present_m_s2);
-        self.controller.turn_feedback(|_| applied - reference.thrust);
+        let feedback = self.observed.first_feedback(model, answer, deviation);
+        // Nothing of no length need be cut off, which would divide by it.
+        if let Some(feedback) = feedback.filter(|feedback| *feedback != Vector2::zeros()) {
+            let applied = (reference.thrust + feedback).cap_magnitude(present_m_s2);
+            self.controller.turn_feedback(|_| applied - reference.thrust);
+        }
     }
 
     /// The increment of a sample that limits go by, and what beside it only the feedback answers to. Noise looks like a force that comes
@@ -198,16 +208,15 @@ impl PositionController {
         &mut self,
         design: &CascadeDesign,
         motion: &MotionSample<POSITION_STATES, 2>,
-        times @ (_, lag_s): (f64, f64),
+        times: (f64, f64),
         thrown: &Vector2<f64>,
     ) -> [SVector<f64, POSITION_STATES>; 2] {
         let model = design.position.motion.as_ref();
         let zero = Vector2::zeros();
         let thrown = if model.is_some() { *thrown } else { zero };
         let increment = self.observed.step(model, motion, times);
-        let foresees = lag_s > 0.0 && design.position.law.regulator().is_none();
         let passing = match model {
-            Some(model) if foresees => self.observed.passing(model),
+            Some(model) if design.position.law.plans_increments() => self.observed.passing(model),
             _ => SVector::zeros(),
         };
         [increment - passing, passing + by_axis([zero, zero, zero, zero, thrown, zero])]

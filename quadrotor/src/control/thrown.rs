@@ -11,6 +11,10 @@ use crate::design::position_limits::TurnUnderWay;
 /// How many times more jerk than what has thrown it lately made, a body is brought back from.
 const BRAKED: f64 = 5.0;
 
+/// How many times as much snap as a lean that nobody has commanded would end with within a delay of the attitude loop, a body is brought back
+/// with: past the reference, to take back the velocity that it has gained.
+const TAKEN_BACK: f64 = 10.0;
+
 /// By how much what turns the body beside its rotors has changed within the time in which the attitude loop answers. It is remembered in the
 /// axes of the body: what lasts there, such as a centre of mass beside the rotors', turns with the vehicle, and so does what holds it.
 ///
@@ -38,6 +42,17 @@ struct Turning {
 }
 
 impl Thrown {
+    /// Of a vehicle that is taken over while it accelerates and jerks beside its reference, m/s² and m/s³: nobody has commanded that, and
+    /// limits on commands do not bound the way back.
+    pub(crate) fn taken_over(acceleration_m_s2: f64, jerk_m_s3: f64, attitude: Option<AttitudeLoop>) -> Self {
+        let delay_s = attitude.map_or(0.0, |attitude| attitude.delay_s());
+        if delay_s <= 0.0 {
+            return Self::default();
+        }
+        let thrown_m_s3 = acceleration_m_s2 / delay_s + jerk_m_s3;
+        Self { latest: None, thrown_m_s4: TAKEN_BACK * thrown_m_s3 / delay_s }
+    }
+
     /// The snap by which the last sample's differs when it is seen as now, m/s⁴: by a law that sees what turns the body beside its rotors,
     /// or by one that sees the rotors alone, which hold against it. What is held has turned with the body since then.
     pub(crate) fn turned_m_s4(&self, seen: &HorizontalMotion, sees_it: bool) -> Vector2<f64> {
@@ -170,6 +185,22 @@ mod tests {
         let jump = Vector2::new(0.0, 2.0);
         let (under_way, _) = Thrown::default().turn_under_way(&seen, &zero, (None, 0.05), &jump);
         assert_eq!((under_way.snap_m_s4, under_way.jump_m_s3, under_way.jerk_m_s3), (10.0, 2.0, 0.0));
+    }
+
+    /// A vehicle that is taken over at rest has no more room than its limits; one that leans and rolls has ten times what it takes to bring
+    /// that to an end within a delay.
+    #[test]
+    fn a_lean_that_nobody_has_commanded_may_come_back() {
+        let design = CascadeDesign::new(&Configuration::default()).expect("a design");
+        let attitude = design.attitude_loop().expect("a loop");
+        let (zero, delay_s) = (Vector2::zeros(), attitude.delay_s());
+        assert_eq!(Thrown::taken_over(0.0, 0.0, Some(attitude)), Thrown::default());
+        assert_eq!(Thrown::taken_over(1.0, 1.0, None), Thrown::default());
+        let mut thrown = Thrown::taken_over(delay_s, 2.0, Some(attitude));
+        let (under_way, _) = thrown.turn_under_way(&still(), &zero, (Some(attitude), delay_s), &zero);
+        let expected_m_s3 = 10.0 * 3.0 / 1_f64.exp();
+        assert!((under_way.jerk_m_s3 - expected_m_s3).abs() < 1e-9, "{under_way:?}");
+        assert!((under_way.snap_m_s4 * delay_s - expected_m_s3).abs() < 1e-9, "{under_way:?}");
     }
 
     /// A torque that is held while the body spins changes nothing, with both kinds of laws: neither sees what turns with the body.

@@ -107,6 +107,11 @@ impl<const N: usize, const P: usize, const S: usize, const L: usize> TrackingLaw
         }
     }
 
+    /// Whether it plans under limits how an increment goes on.
+    pub(crate) fn plans_increments(&self) -> bool {
+        matches!(self, Self::FewTerms(_) | Self::ManyTerms(_))
+    }
+
     /// What a law under limits asks for beside its plan when an increment comes to it that the plan need not foresee: −K Δx.
     pub(crate) fn answer_to(&self, increment: &SVector<f64, N>) -> SVector<f64, P> {
         match self {

@@ -52,6 +52,26 @@ pub(crate) struct RotorRoom<'a> {
 }
 
 impl RotorRoom<'_> {
+    /// What of an answer about roll and pitch, rad/s², the rotors have room for beside what is planned, rad/s².
+    pub(crate) fn lean_beside(
+        &self,
+        planned_rad_s2: &Vector2<f64>,
+        answer_rad_s2: &Vector2<f64>,
+    ) -> Vector2<f64> {
+        let (down_n, up_n) = self.mixer.tilting_room_n(self.thrust_n);
+        let thrusts_n = |lean_rad_s2: &Vector2<f64>, other_n_m: &Vector2<f64>| {
+            self.mixer.tilting_thrusts_n(&(lean_rad_s2.component_mul(&self.inertia_kg_m2.xy()) + other_n_m))
+        };
+        let taken_n = thrusts_n(planned_rad_s2, &self.other_n_m.xy());
+        let more_n = thrusts_n(answer_rad_s2, &Vector2::zeros());
+        let shares = taken_n.iter().zip(&more_n).map(|(taken, more)| {
+            let room = if *more > 0.0 { up_n - taken } else { down_n + taken };
+            let size = libm::fabs(*more);
+            if size <= room { 1.0 } else { room.max(0.0) / size }
+        });
+        answer_rad_s2 * shares.fold(1.0, f64::min)
+    }
+
     /// Values of [`lean_limits`]. Thrust gives way to roll and pitch.
     pub(crate) fn lean_bounds(&self) -> [f64; LEAN_BOUNDS] {
         let (down_n, up_n) = self.mixer.tilting_room_n(self.thrust_n);

@@ -52,6 +52,32 @@ fn from_upside_down() {
     }
 }
 
+/// Where a law takes over a vehicle that leans or rolls, nobody has commanded that: limits on commands do not keep Laguerre MPC from taking it
+/// back as soon as the regulator does. It went up to nine times as far.
+#[test]
+fn a_lean_that_nobody_has_commanded_is_taken_back_at_once() {
+    for preset in AirframePreset::ALL {
+        for (roll_rad, rate_rad_s) in [(0.3, 0.0), (0.9, 0.0), (0.0, 2.0), (0.2, -3.0)] {
+            let [flown_m, regulated_m] = [ControllerKind::Lmpc, ControllerKind::Dlqr].map(|kind| {
+                let mut configuration = Configuration::for_airframe(&preset.airframe()).unwrap();
+                configuration.controllers.kind = kind;
+                configuration.reference.shaping = false;
+                configuration.initial.attitude_rad = [roll_rad, 0.0, 0.0];
+                configuration.initial.body_rate_rad_s = [rate_rad_s, 0.0, 0.0];
+                let mut farthest_m = 0.0_f64;
+                fly(&configuration, &goal([0.0; 3], 0.0), 6.0, |outputs| {
+                    farthest_m = farthest_m.max(outputs.position_m.norm());
+                });
+                farthest_m
+            });
+            let told =
+                format!("{preset:?}, {roll_rad} rad, {rate_rad_s} rad/s: {flown_m} and {regulated_m} m");
+            println!("{told}");
+            assert!(flown_m < 1.2 * regulated_m + 1e-3, "{told}");
+        }
+    }
+}
+
 /// How far beyond a height, m, a vehicle goes that is thrown down by 0.7 m/s and leans at the start, and should climb.
 fn beyond_m(preset: AirframePreset, kind: ControllerKind) -> f64 {
     let mut configuration = Configuration::for_airframe(&preset.airframe()).unwrap();
