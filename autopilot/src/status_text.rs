@@ -86,35 +86,23 @@ pub fn messages(severity: Severity, text: &str, next_id: &mut u16) -> Vec<MavMes
     pieces.into_iter().enumerate().map(chunk).collect()
 }
 
-/// A text in pieces that end between words.
+/// A text in pieces that clients join as they are: words may be cut, since each blank that filled a piece up would be shown.
 ///
-/// A piece that holds a zero is the last one, so the ones before it are filled up with spaces.
+/// A piece that holds a zero is the last one.
 fn pieces(text: &str) -> Vec<[u8; CHUNK]> {
     // The field is bytes; a character that is not ASCII would be cut in the middle.
     let text = ascii(text);
-    let mut pieces = Vec::new();
-    let mut rest = text.as_bytes();
-    while rest.len() > CHUNK {
-        let space = rest[..=CHUNK].iter().rposition(|letter| *letter == b' ').filter(|at| *at > 0);
-        // A word that is longer than a piece has to be cut.
-        let (piece, behind) = rest.split_at(space.unwrap_or(CHUNK));
-        pieces.push(padded(piece, b' '));
-        rest = if space.is_some_and(|at| at == CHUNK) {
-            behind
-        } else {
-            behind.strip_prefix(b" ").unwrap_or(behind)
-        };
-    }
-    let full = rest.len() == CHUNK && !pieces.is_empty();
-    pieces.push(padded(rest, 0));
-    if full {
+    let letters = text.as_bytes();
+    let mut pieces: Vec<_> = letters.chunks(CHUNK).map(padded).collect();
+    // An empty one ends what fills its pieces, unless it is whole in one.
+    if pieces.is_empty() || pieces.len() > 1 && letters.len().is_multiple_of(CHUNK) {
         pieces.push([0; CHUNK]);
     }
     pieces
 }
 
-fn padded(piece: &[u8], padding: u8) -> [u8; CHUNK] {
-    let mut text = [padding; CHUNK];
+fn padded(piece: &[u8]) -> [u8; CHUNK] {
+    let mut text = [0; CHUNK];
     for (byte, letter) in text.iter_mut().zip(piece) {
         *byte = *letter;
     }
@@ -123,7 +111,7 @@ fn padded(piece: &[u8], padding: u8) -> [u8; CHUNK] {
 
 #[cfg(test)]
 mod tests {
-    use proptest::prelude::{any, prop_assert, prop_assert_eq, proptest};
+    use proptest::prelude::{prop_assert, prop_assert_eq, proptest};
 
     use super::{CHUNK, pieces};
 
@@ -133,34 +121,22 @@ mod tests {
     }
 
     #[test]
-    fn a_text_is_broken_between_words() {
+    fn a_text_is_cut_where_a_piece_is_full() {
         assert_eq!(shown("Ready"), ["Ready"]);
+        assert_eq!(shown(""), [""]);
         assert_eq!(shown(&"x".repeat(50)), ["x".repeat(50)]);
+        assert_eq!(shown(&"x".repeat(100)), ["x".repeat(50), "x".repeat(50), String::new()]);
         let text = "Mission rejected: item 12: SET_CAMERA_MODE (530): not supported";
-        let first = format!("{:<50}", "Mission rejected: item 12: SET_CAMERA_MODE (530):");
-        assert_eq!(shown(text), [first, "not supported".to_owned()]);
-    }
-
-    #[test]
-    fn a_word_at_the_end_of_a_piece_does_not_grow_into_the_next() {
-        let text = format!("{} {}", "x".repeat(50), "y");
-        assert_eq!(shown(&text).concat(), text);
-        let text = format!("{} {}", "x".repeat(49), "y");
-        assert_eq!(shown(&text).concat(), text);
+        assert_eq!(shown(text), ["Mission rejected: item 12: SET_CAMERA_MODE (530): ", "not supported"]);
     }
 
     proptest! {
-        /// A client that joins the pieces reads the same words, and sees where the text ends.
+        /// A client that joins the pieces reads the same, and sees where the text ends.
         #[test]
-        fn nothing_is_lost(text in "[a-z ]{0,200}", padding in any::<bool>()) {
-            let text = if padding { format!("{text}{}", "z".repeat(60)) } else { text };
+        fn nothing_is_lost_and_nothing_added(text in "[a-z ]{0,200}") {
             let pieces = pieces(&text);
             let joined: String = pieces.iter().flatten().filter(|byte| **byte != 0).map(|byte| *byte as char).collect();
-            if !padding {
-                prop_assert_eq!(joined.split_whitespace().collect::<Vec<_>>(), text.split_whitespace().collect::<Vec<_>>());
-            } else {
-                prop_assert_eq!(joined.replace(' ', ""), text.replace(' ', ""));
-            }
+            prop_assert_eq!(joined, text);
             let (last, before) = pieces.split_last().expect("a piece");
             prop_assert!(before.iter().all(|piece| !piece.contains(&0)));
             prop_assert!(last.contains(&0) || before.is_empty());

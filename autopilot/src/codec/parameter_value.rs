@@ -43,6 +43,13 @@ impl Encoding {
         }
     }
 
+    /// Whether PARAM_SET of a MAV_PARAM_TYPE can change a parameter that has a value. The bytes of an integer are no real value, and PX4
+    /// refuses them; ArduPilot converts all types.
+    pub fn fits(self, present: Value, parameter_type: u8) -> bool {
+        let is_integer = (UINT8..=INT32).contains(&parameter_type);
+        self == Self::Cast || !is_integer || matches!(present, Value::Integer(_))
+    }
+
     /// The number in the float field of PARAM_SET, of the MAV_PARAM_TYPE that its sender says.
     pub fn decode(self, field: f32, parameter_type: u8) -> f64 {
         let [low, second, ..] = field.to_le_bytes();
@@ -85,6 +92,7 @@ mod tests {
         assert_eq!(Encoding::Cast.decode(-7.0, 6), -7.0);
         assert_eq!(Encoding::Bytewise.decode(f32::from_bits(0xff), 2), -1.0);
         // A client that sends every value as a float.
+        assert!(Encoding::Bytewise.fits(Value::Integer(3), 9));
         assert_eq!(Encoding::Bytewise.decode(3.0, 9), 3.0);
     }
 }

@@ -237,12 +237,19 @@ fn take_off(context: &mut Context, command: &Command) -> Result<(), Refusal> {
         // A third parameter lets the pilot hold the place.
         return vehicle.take_off_in_mode(height_m, command.parameter(3) == 0.0).map_err(failed);
     }
-    let down_m = vehicle.site().down_m(global_frame(command)?, command.z, vehicle.horizontal_m());
+    let frame = global_frame(command)?;
+    let down_m = vehicle.site().down_m(frame, command.z, vehicle.horizontal_m());
     let height_m = vehicle.home().position_m.z - down_m;
     // PX4 takes an altitude below the ground for one above home of its parameter.
     const LEAST_M: f64 = 0.5;
     if height_m < LEAST_M {
-        let text = format!("Takeoff altitude {:.1} m not above home: using default", command.z);
+        let counts_from = if matches!(frame, plan::frame::GLOBAL | plan::frame::GLOBAL_INT) {
+            let home_m = vehicle.place_of(&vehicle.home().position_m).altitude_m;
+            format!("above sea level, home is at {home_m:.1} m")
+        } else {
+            "not above home".to_owned()
+        };
+        let text = format!("Takeoff altitude {:.1} m {counts_from}: using default", command.z);
         context.say(Severity::Warning, &text);
         return context.vehicle.take_off(None);
     }

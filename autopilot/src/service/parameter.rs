@@ -195,15 +195,59 @@ fn error_code(error: &SetError) -> MavParamError {
     }
 }
 
-/// PARAM_SET: the new value goes to everyone; a refusal is answered with the present one and says why. Returns what was changed.
+/// What is wrong with PARAM_SET.
+enum Mistake {
+    /// Its type.
+    Type,
+    /// Its name or value.
+    Value(SetError),
+}
+
+impl Mistake {
+    fn code(&self) -> MavParamError {
+        match self {
+            Self::Type => MavParamError::MAV_PARAM_ERROR_TYPE_MISMATCH,
+            Self::Value(error) => error_code(error),
+        }
+    }
+
+    fn words(&self, name: &str) -> String {
+        match self {
+            Self::Type => format!("{name} is a real number: set it as REAL32"),
+            Self::Value(error) => error.to_string(),
+        }
+    }
+}
+
+/// Changes a parameter at an index of the table, if there is one, as PARAM_SET asks.
+fn change(
+    context: &mut Context,
+    index: Option<usize>,
+    name: &str,
+    field: f32,
+    kind: u8,
+) -> Result<(), Mistake> {
+    let encoding = Encoding::of(context.identity());
+    let present = index.and_then(|index| context.parameters.value(index, &context.vehicle));
+    if present.is_some_and(|present| !encoding.fits(present, kind)) {
+        return Err(Mistake::Type);
+    }
+    let value = encoding.decode(field, kind);
+    context.parameters.set(name, value, &mut context.vehicle).map_err(Mistake::Value)
+}
+
+/// PARAM_SET: the new value goes to everyone. A refusal says why, then what the value still is: MAVSDK takes the first answer for that to
+/// its request, and sends the request again when that is a value that it did not ask for. Returns what was changed.
 fn set(context: &mut Context, origin: &Origin, frame: &Frame) -> Option<usize> {
     let payload = frame.payload();
     let name = payload.name(6);
-    let value = Encoding::of(context.identity()).decode(payload.f32(0), payload.u8(22));
     let known = stability_warnings(context);
-    let result = context.parameters.set(&name, value, &mut context.vehicle);
     let index = context.parameters.table().index_of(&name);
+    let result = change(context, index, &name, payload.f32(0), payload.u8(22));
     let changed = index.filter(|_| result.is_ok());
+    if let Err(mistake) = &result {
+        refuse(context, origin, BY_NAME, &name, mistake.code());
+    }
     if let Some(index) = index {
         let listed = context.parameters.table().entries().get(index).is_some_and(|entry| entry.id == name);
         if result.is_ok() {
@@ -213,9 +257,8 @@ fn set(context: &mut Context, origin: &Origin, frame: &Frame) -> Option<usize> {
             send_value_as(context, index, &name, Destination::Peer(origin.peer));
         }
     }
-    if let Err(error) = result {
-        refuse(context, origin, BY_NAME, &name, error_code(&error));
-        context.say(Severity::Warning, &error.to_string());
+    if let Err(mistake) = result {
+        context.say(Severity::Warning, &mistake.words(&name));
     }
     for warning in stability_warnings(context) {
         if !known.contains(&warning) {

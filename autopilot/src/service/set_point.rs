@@ -136,7 +136,7 @@ fn resolve(target: &SetPositionTarget, vehicle: &Vehicle) -> Result<PositionSetP
             for pair in [&mut given.velocity, &mut given.acceleration, &mut given.position] {
                 if pair[0] != pair[1] {
                     return Err(Refusal::denied(
-                        "Set-point refused: half a horizontal vector in a body frame",
+                        "Set-point rejected: half a horizontal vector in a body frame",
                     ));
                 }
             }
@@ -228,7 +228,7 @@ fn global_position(target: &SetPositionTarget, vehicle: &Vehicle) -> Result<Vect
     let place = Geodetic { latitude_deg, longitude_deg, altitude_m: vehicle.frame().origin().altitude_m };
     if !place.is_valid() {
         return Err(Refusal::denied(format!(
-            "Set-point refused: no place at latitude {latitude_deg}, longitude {longitude_deg}"
+            "Set-point rejected: no place at latitude {latitude_deg}, longitude {longitude_deg}"
         )));
     }
     let mut position_m = vehicle.frame().to_local_m(&place);
@@ -271,24 +271,28 @@ fn check(
     if !any(&given.position) && !any(&given.velocity) && !any(&given.acceleration) {
         return Err(Refusal::denied("Set-point rejected: it contains no target"));
     }
-    for (name, axes, values, most) in [
-        ("position", &given.position, position, FARTHEST_M),
-        ("velocity", &given.velocity, velocity, FASTEST_M_S),
-        ("acceleration", &given.acceleration, acceleration, STRONGEST_M_S2),
+    for (name, axes, values, most, unit) in [
+        ("position", &given.position, position, FARTHEST_M, "m"),
+        ("velocity", &given.velocity, velocity, FASTEST_M_S, "m/s"),
+        ("acceleration", &given.acceleration, acceleration, STRONGEST_M_S2, "m/s²"),
     ] {
         if let Some(axis) = (0..3).find(|axis| axes[*axis] && values[*axis].abs() > most) {
-            return Err(Refusal::denied(format!(
-                "Set-point refused: {name} {:.3e} is beyond {most}",
-                values[axis]
-            )));
+            return Err(beyond(name, values[axis], most, unit));
         }
     }
     if given.yaw_rate && yaw_rate_rad_s.abs() > QUICKEST_TURN_RAD_S {
-        return Err(Refusal::denied(format!(
-            "Set-point refused: yaw rate {yaw_rate_rad_s:.3e} is beyond {QUICKEST_TURN_RAD_S}"
-        )));
+        return Err(beyond("yaw rate", yaw_rate_rad_s, QUICKEST_TURN_RAD_S, "rad/s"));
     }
     Ok(())
+}
+
+/// A value is larger than any limit can be set to.
+fn beyond(name: &str, value: f64, most: f64, unit: &str) -> Refusal {
+    // Of what is far beyond, decimals tell nothing.
+    let decimals = if value.abs() < 10.0 * most { 2 } else { 0 };
+    Refusal::denied(format!(
+        "Set-point rejected: {name} {value:.decimals$} {unit}; allowed -{most} to {most} {unit}"
+    ))
 }
 
 fn compose(
@@ -341,7 +345,10 @@ fn compose(
 
 fn resolve_attitude(target: &SetAttitudeTarget) -> Result<AttitudeSetPoint, Refusal> {
     let ignored = |bit: u8| target.type_mask & bit != 0;
-    if ignored(THRUST_IGNORE) || !(0.0..=1.0).contains(&target.thrust) {
+    if ignored(THRUST_IGNORE) {
+        return Err(Refusal::denied("Attitude rejected: send thrust; clear mask bit 64"));
+    }
+    if !(0.0..=1.0).contains(&target.thrust) {
         return Err(Refusal::denied("Attitude rejected: thrust must be from 0 to 1"));
     }
     let rate_bits = [ROLL_RATE_IGNORE, PITCH_RATE_IGNORE, YAW_RATE_IGNORE_ATTITUDE];
@@ -350,7 +357,7 @@ fn resolve_attitude(target: &SetAttitudeTarget) -> Result<AttitudeSetPoint, Refu
     // NaN is not within.
     if !rates.iter().all(|rate| rate.abs() <= QUICKEST_RATE_RAD_S) {
         return Err(Refusal::denied(format!(
-            "Attitude refused: a body rate is not within {QUICKEST_RATE_RAD_S} rad/s"
+            "Attitude rejected: a body rate is not within {QUICKEST_RATE_RAD_S} rad/s"
         )));
     }
     let attitude = if ignored(ATTITUDE_IGNORE) {

@@ -93,7 +93,7 @@ pub struct Arguments {
     /// A datagram has the pulses of 8 or 16 channels in µs, 16 bits each, the lowest byte first, as ArduPilot's SITL receives them on port
     /// 5501. Pulses hold until the next datagram. Each further vehicle has a port of its own, 10 above the one before it. Port 0 is any free
     /// port. Only programs on this machine can reach the port. [default: none]
-    #[arg(long, env = "LMPC_SITL_RC_PORT", value_name = "PORT", help_heading = LINKS, hide_short_help = true)]
+    #[arg(long, env = "LMPC_SITL_RC_PORT", value_name = "PORT", value_parser = whole(0_u16, 65_535), allow_negative_numbers = true, help_heading = LINKS, hide_short_help = true)]
     pub rc_port: Option<u16>,
 
     /// Autopilot whose conventions to follow [default: px4]
@@ -362,7 +362,7 @@ pub struct Arguments {
     /// [default: off; 127.0.0.1:8088 without a value]
     #[arg(
         long, env = "LMPC_SITL_VIEW", value_name = "[HOST:]PORT", num_args = 0..=1, default_missing_value = DEFAULT_VIEW,
-        help_heading = LINKS
+        allow_negative_numbers = true, help_heading = LINKS
     )]
     pub view: Option<ViewAddress>,
 
@@ -410,7 +410,7 @@ pub struct Arguments {
     /// PX4 connects to port 4560; HOST defaults to 127.0.0.1. Sends HIL_SENSOR, HIL_GPS and HIL_STATE_QUATERNION, receives
     /// HIL_ACTUATOR_CONTROLS, in lock-step. Start PX4 with `make px4_sitl none_iris`; on another machine, set its
     /// PX4_SIM_HOSTNAME to this one.
-    #[arg(long, env = "LMPC_SITL_HIL", value_name = "[HOST:]PORT", help_heading = HIL, hide_short_help = true)]
+    #[arg(long, env = "LMPC_SITL_HIL", value_name = "[HOST:]PORT", allow_negative_numbers = true, help_heading = HIL, hide_short_help = true)]
     pub hil: Option<String>,
 
     /// How the autopilot is mounted on the airframe [default: x]

@@ -18,6 +18,7 @@ mod log_filter;
 pub mod mistake;
 mod noise;
 mod parameter_list;
+mod partners;
 mod plan_file;
 mod ranged;
 mod settings;

@@ -10,15 +10,15 @@ use vehicle::estimation::{SensorModel, SensorSettings};
 use vehicle::fault::ScheduledFault;
 use vehicle::identity::Identity;
 use vehicle::parameters::Speed;
-use vehicle::plan::{Plans, Site};
+use vehicle::plan::{PlanKind, Plans, Site};
 use vehicle::surroundings::Surroundings;
 use vehicle::world::{LocalFrame, WindSettings};
 use vehicle::{BatteryPack, Conduct, Notice, Severity, TICK_US, VehicleSettings};
 
 use super::start_parameters::set_parameters;
 use super::{
-    AirframeChoice, Arguments, Clocks, Ports, TrafficChoice, ViewAddress, fmu, read_plans, read_world,
-    wind_drag, wind_hold,
+    AirframeChoice, Arguments, Clocks, Ports, TrafficChoice, ViewAddress, fmu, partners, read_plans,
+    read_world, wind_drag, wind_hold,
 };
 use crate::failure::Failure;
 use crate::files::kept_plans;
@@ -100,6 +100,7 @@ impl Settings {
         let shared = arguments.ports.unwrap_or_default() == Ports::Shared;
         let count = ids.len();
         check_addresses(arguments, &ids)?;
+        partners::check(arguments, count)?;
         let fmu = fmu::choice(arguments)?;
         let member = |(number, system_id): (usize, u8)| {
             let parameters = arguments.parameters.as_deref();
@@ -125,11 +126,11 @@ impl Settings {
             hubs: (0..hubs).map(|number| hub(arguments, instance, number)).collect::<Result<_, _>>()?,
             clocks: arguments.clocks.unwrap_or_default(),
             speed: arguments.speed.unwrap_or(Speed::Factor(1.0)),
-            lockstep: lockstep(arguments)?,
+            lockstep: lockstep(arguments),
             record: arguments.record.clone(),
             record_most_bytes: (arguments.record_size.unwrap_or(RECORD_MEGABYTES) * 1e6) as u64,
             tlog: arguments.tlog.clone(),
-            logs: log_settings(arguments)?,
+            logs: log_settings(arguments),
             fleet_traffic: arguments.traffic.iter().flatten().any(|choice| *choice == TrafficChoice::Fleet),
             ftp_root: arguments.ftp_root.clone().map(|path| (path, arguments.ftp_write.unwrap_or(false))),
             signing_key: arguments.signing_key.clone(),
@@ -175,24 +176,13 @@ fn rc_port(first: u16, number: usize) -> Result<u16, Failure> {
 }
 
 /// Whether and how simulation time waits for set-points.
-fn lockstep(arguments: &Arguments) -> Result<Option<LockstepSettings>, Failure> {
+fn lockstep(arguments: &Arguments) -> Option<LockstepSettings> {
     const PERIOD_S: f64 = 0.02;
     const TIMEOUT_S: f64 = 5.0;
-    let Some(phase) = arguments.lockstep else {
-        for (name, given) in [
-            ("--lockstep-period", arguments.lockstep_period),
-            ("--lockstep-timeout", arguments.lockstep_timeout),
-        ] {
-            if given.is_some() {
-                let reason = "needs --lockstep".to_owned();
-                return Err(Failure::Value { name: name.to_owned(), reason });
-            }
-        }
-        return Ok(None);
-    };
+    let phase = arguments.lockstep?;
     let ticks = (arguments.lockstep_period.unwrap_or(PERIOD_S) * 1e6 / TICK_US as f64).round() as u64;
     let timeout = Duration::from_secs_f64(arguments.lockstep_timeout.unwrap_or(TIMEOUT_S));
-    Ok(Some(LockstepSettings { phase, period_us: ticks * TICK_US, timeout }))
+    Some(LockstepSettings { phase, period_us: ticks * TICK_US, timeout })
 }
 
 /// A vehicle that does not move must not look broken.
@@ -329,6 +319,7 @@ pub(super) fn vehicle(
         terrain: vehicle.surroundings.terrain.clone(),
     };
     vehicle.plans = plans(arguments, system_id, parameters, &site)?;
+    check_autostart(arguments, system_id, &vehicle.plans)?;
     Ok((vehicle, airframe_note.into_iter().chain(note).chain(chosen.warnings).collect()))
 }
 
@@ -356,6 +347,19 @@ fn plans(
         (Some(path), _) => read_plans(path, site),
         (None, Some(parameters)) => Ok(kept_plans(parameters, site)?.unwrap_or_default()),
         (None, None) => Ok(Plans::default()),
+    }
+}
+
+/// Refuses to start by itself what has nothing to fly.
+fn check_autostart(arguments: &Arguments, system_id: u8, plans: &Plans) -> Result<(), Failure> {
+    let file = mission_of(arguments, system_id).filter(|_| arguments.autostart == Some(true));
+    match file {
+        Some(path) if plans.get(PlanKind::Mission).items().is_empty() => {
+            let reason =
+                format!("`{}` has no mission items to start; add one, or leave the flag out", path.display());
+            Err(Failure::Value { name: "--autostart".to_owned(), reason })
+        }
+        _ => Ok(()),
     }
 }
 
@@ -403,19 +407,15 @@ fn noise_seed(arguments: &Arguments, number: usize) -> u32 {
     ((seed ^ seed >> 31 ^ seed >> 62) & 0x7fff_ffff) as u32
 }
 
-fn log_settings(arguments: &Arguments) -> Result<LogSettings, Failure> {
+fn log_settings(arguments: &Arguments) -> LogSettings {
     const MEGABYTES: f64 = 100.0;
     const COUNT: u32 = 100;
-    if arguments.ftp_write == Some(true) && arguments.ftp_root.is_none() {
-        let reason = "needs --ftp-root".to_owned();
-        return Err(Failure::Value { name: "--ftp-write".to_owned(), reason });
-    }
-    Ok(LogSettings {
+    LogSettings {
         folder: arguments.log_dir.clone(),
         start: arguments.log_start.unwrap_or_default(),
         most_bytes: (arguments.log_size.unwrap_or(MEGABYTES) * 1e6) as u64,
         most_files: arguments.log_count.unwrap_or(COUNT) as usize,
-    })
+    }
 }
 
 /// The airframe of a system: its own, else that of all.
@@ -468,7 +468,9 @@ fn faults(arguments: &Arguments, system_id: u8) -> Result<Vec<ScheduledFault>, F
     match faults.iter().find(|scheduled| ideal && scheduled.fault.needs_readings()) {
         None => Ok(faults),
         Some(scheduled) => {
-            let reason = format!("`{scheduled}` needs --sensors realistic; ideal sensors can only be `off`");
+            let reason = format!(
+                "`{scheduled}` needs --sensors realistic; ideal sensors can only be `off`, `stuck` or `intermittent`"
+            );
             Err(Failure::Value { name: "--fault".to_owned(), reason })
         }
     }

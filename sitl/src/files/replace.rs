@@ -25,10 +25,19 @@ pub fn replace(path: &Path, content: &[u8], readers: Readers) -> io::Result<()> 
     let mut builder = tempfile::Builder::new();
     builder.prefix(&prefix).suffix(".new");
     limit(&mut builder, readers);
-    let mut file = builder.tempfile_in(folder.unwrap_or(Path::new(".")))?;
+    let folder = folder.unwrap_or(Path::new("."));
+    let mut file = builder.tempfile_in(folder).map_err(|error| unmade(folder, &error))?;
     file.write_all(content)?;
     file.persist(&path).map_err(|error| error.error)?;
     Ok(())
+}
+
+/// Why no file can be made in a folder. The library's error names the file that was to take the other one's place, which nobody knows.
+fn unmade(folder: &Path, error: &io::Error) -> io::Error {
+    match std::fs::metadata(folder) {
+        Err(of_folder) => of_folder,
+        Ok(_) => error.kind().into(),
+    }
 }
 
 /// Lets the file's readers read it, and nobody else.
@@ -60,7 +69,8 @@ mod tests {
         replace(&path, b"one", Readers::All).expect("written");
         replace(&path, b"two", Readers::All).expect("written");
         assert_eq!(std::fs::read(&path).expect("there"), b"two");
-        assert!(replace(&folder.path().join("no/such"), b"", Readers::All).is_err());
+        let refused = replace(&folder.path().join("no/such"), b"", Readers::All).expect_err("no folder");
+        assert!(!refused.to_string().contains(".new"), "{refused}");
         assert!(replace(folder.path(), b"", Readers::All).is_err(), "a folder is no file");
         let names: Vec<_> = std::fs::read_dir(folder.path()).expect("a folder").collect();
         assert_eq!(names.len(), 1, "{names:?}");

@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use autopilot::codec::Frame;
-use vehicle::Pulses;
 use vehicle::foreign::ForeignMotion;
+use vehicle::{Pulses, TICK_US};
 
 use super::Member;
 use crate::configuration::Settings;
@@ -12,6 +12,9 @@ use crate::failure::Failure;
 use crate::files::{Notice, WRITE_PERIOD};
 use crate::link::Received;
 use crate::record::{Digest, Header, Participant, Recorder, TrafficLog};
+
+/// How a flight has gone is recorded in such intervals of its simulation time, µs.
+const STATE_PERIOD_US: u64 = 1_000_000;
 
 /// Record and log, if they are asked for.
 #[derive(Debug)]
@@ -76,6 +79,23 @@ impl Books {
         }
     }
 
+    /// How many ticks, up to `most`, a member flies at once from a time, µs, so that its state is recorded when it is due.
+    pub fn ticks_to_state(&self, time_us: u64, most: u64) -> u64 {
+        let to_state_us = STATE_PERIOD_US - time_us % STATE_PERIOD_US;
+        if self.recorder.is_some() { most.min(to_state_us / TICK_US) } else { most }
+    }
+
+    /// A member has flown on: how its flight has gone is recorded each second of simulation time.
+    pub fn flown(&mut self, number: usize, member: &Member) {
+        let time_us = member.time_us();
+        if !time_us.is_multiple_of(STATE_PERIOD_US) {
+            return;
+        }
+        if let Some(recorder) = &mut self.recorder {
+            recorder.state(number, time_us, member.digest());
+        }
+    }
+
     /// The simulation of a member has failed in the tick that follows.
     pub fn failure(&mut self, member: usize, time_us: u64, digest: Digest) {
         if let Some(recorder) = &mut self.recorder {
@@ -90,28 +110,14 @@ impl Books {
         }
     }
 
-    /// Whether [`Self::keep_up`] writes down now how things are.
-    pub fn are_due(&self, now: Instant) -> bool {
-        self.recorder.is_some() && self.is_time(now)
-    }
-
-    fn is_time(&self, now: Instant) -> bool {
-        now.saturating_duration_since(self.written) >= WRITE_PERIOD
-    }
-
     /// Writes what waits, each second of the wall clock. Returns what to announce.
-    pub fn keep_up(&mut self, members: &[Member], now: Instant) -> Vec<Notice> {
+    pub fn keep_up(&mut self, now: Instant) -> Vec<Notice> {
         let mut notices = Vec::new();
-        if !self.is_time(now) {
+        if now.saturating_duration_since(self.written) < WRITE_PERIOD {
             return notices;
         }
         self.written = now;
-        if let Some(recorder) = &mut self.recorder {
-            for (number, time_us, digest) in flights(members) {
-                recorder.state(number, time_us, digest);
-            }
-            notices.extend(recorder.flush());
-        }
+        notices.extend(self.recorder.as_mut().map(Recorder::flush).into_iter().flatten());
         notices.extend(self.traffic.as_mut().and_then(TrafficLog::flush));
         notices
     }

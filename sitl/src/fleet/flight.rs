@@ -71,12 +71,13 @@ impl Fleet {
         let flying = |member: &&mut Member| member.loss().is_none();
         let Some(member) = self.members.get_mut(number).filter(flying) else { return };
         let begun_us = member.time_us();
-        match member.fly(most, now) {
+        match member.fly(self.books.ticks_to_state(begun_us, most), now) {
             Ok(()) => {
                 if let Some(motion) = member.autopilot.vehicle().foreign_motion() {
                     self.books.motion(number, begun_us, motion);
-                    self.books.keep_size(&self.members);
                 }
+                self.books.flown(number, member);
+                self.books.keep_size(&self.members);
                 self.send(number, now);
                 self.share_traffic(number, now);
             }

@@ -242,10 +242,7 @@ impl Fleet {
 
     /// What is logged reaches the disk.
     pub(crate) fn keep_logs(&mut self, now: Instant) {
-        if self.books.are_due(now) {
-            self.catch_up_all(now);
-        }
-        for (severity, text) in self.books.keep_up(&self.members, now) {
+        for (severity, text) in self.books.keep_up(now) {
             for number in 0..self.members.len() {
                 let Some(member) = self.attend(number, now) else { continue };
                 member.autopilot.announce(severity, &text);

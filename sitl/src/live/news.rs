@@ -99,7 +99,7 @@ impl NewsDesk {
         let before = self.begun.iter().position(known).map(|index| self.begun.swap_remove(index).2);
         let line = before.unwrap_or_default() + piece;
         if piece.chars().count() < CHUNK {
-            return Some(line.split_whitespace().collect::<Vec<_>>().join(" "));
+            return Some(line);
         }
         self.begun.retain(|(from, _, _)| *from != system);
         self.begun.push((system, text.id, line));

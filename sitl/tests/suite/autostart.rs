@@ -55,3 +55,20 @@ fn a_mission_starts_by_itself_and_ends_disarmed() {
         }
     }
 }
+
+/// What speaks against arming is told in a log that would otherwise end with "starting when ready".
+#[test]
+fn what_keeps_a_mission_from_starting_is_told_now_and_then() {
+    for identity in [Identity::Px4, Identity::ArduPilot] {
+        let mut start = with_plan(identity, true);
+        start.sensors = SensorSettings { model: SensorModel::Realistic, seed: 1 };
+        start.faults = vec!["0:gps=off".parse().expect("a fault")];
+        let mut bench = Bench::of(&start);
+        bench.fly(30.0);
+        let told: Vec<String> =
+            bench.texts().into_iter().filter(|text| text.starts_with("Mission not started: ")).collect();
+        assert!((5..=8).contains(&told.len()), "{identity:?} {:?}", bench.texts());
+        assert!(told.iter().all(|text| text.contains("GPS")), "{told:?}");
+        assert!(!bench.autopilot.vehicle().is_armed());
+    }
+}

@@ -7,7 +7,7 @@ use mavlink::dialects::ardupilotmega::*;
 use vehicle::estimation::SensorModel;
 use vehicle::identity::Identity;
 use vehicle::plan::{MissionItem, Plan, PlanKind, command, frame};
-use vehicle::{Cause, Mode};
+use vehicle::{Cause, Mode, VehicleSettings};
 
 fn count(bench: &Bench, text: &str) -> usize {
     bench.texts().iter().filter(|told| *told == text).count()
@@ -295,4 +295,66 @@ fn without_a_position_it_comes_down_level_and_softly() {
     }
     assert!(fastest < 3.0, "{fastest} m/s");
     assert!(bench.position()[2].abs() < 0.05);
+}
+
+/// A vehicle without a receiver, armed by force.
+fn armed_without_a_position(mut start: VehicleSettings) -> Bench {
+    start.sensors.model = SensorModel::Realistic;
+    start.faults = vec!["0:gps=off".parse().expect("a fault")];
+    let mut bench = Bench::of(&start);
+    bench.fly(3.0);
+    if start.identity.is_ardupilot() {
+        // A mode that needs no place can be armed in.
+        assert_eq!(bench.set_mode(Mode::Offboard), 0);
+    }
+    let by_force = [1.0, 21196.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, by_force), 0, "{:?}", bench.texts());
+    bench.fly(0.1);
+    bench
+}
+
+#[test]
+fn no_takeoff_is_begun_without_a_position() {
+    for identity in [Identity::Px4, Identity::ArduPilot] {
+        let mut bench = armed_without_a_position(settings(identity));
+        let height = if identity.is_ardupilot() { 10.0 } else { f32::NAN };
+        let parameters = [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, height];
+        assert_ne!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, parameters), 0, "{identity:?}");
+        let told = "Takeoff rejected: position lost, only landing is possible";
+        assert_eq!(count(&bench, told), 1, "{identity:?} {:?}", bench.texts());
+        bench.heard.clear();
+        bench.fly(20.0);
+        assert!(bench.position()[2].abs() < 1.0 && bench.autopilot.vehicle().truth().position_m.z > -0.1);
+        // It disarms by itself, and the position is as lost as before.
+        assert!(!bench.autopilot.vehicle().is_armed(), "{:?}", bench.texts());
+        assert!(bench.texts().iter().all(|text| !text.contains("leared")), "{:?}", bench.texts());
+    }
+}
+
+/// Who arms in the mode of missions has asked for no takeoff that could be refused.
+#[test]
+fn a_mission_that_takes_off_without_a_position_lands() {
+    let mut start = settings(Identity::Px4);
+    let takeoff = MissionItem {
+        frame: frame::GLOBAL_RELATIVE_INT,
+        command: command::NAV_TAKEOFF,
+        parameters: [0.0; 4],
+        position: [start.origin.latitude_deg, start.origin.longitude_deg, 15.0],
+        autocontinue: true,
+    };
+    start.plans.set(PlanKind::Mission, Plan::new(vec![takeoff]));
+    start.autostart = false;
+    start.sensors.model = SensorModel::Realistic;
+    start.faults = vec!["0:gps=off".parse().expect("a fault")];
+    let mut bench = Bench::of(&start);
+    bench.fly(3.0);
+    assert_eq!(bench.set_mode(Mode::Mission), 0);
+    let by_force = [1.0, 21196.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    assert_eq!(bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, by_force), 0, "{:?}", bench.texts());
+    bench.fly(30.0);
+    assert!(!bench.autopilot.vehicle().is_armed(), "{:?}", bench.texts());
+    assert!(
+        bench.texts().iter().any(|text| text.starts_with("Position lost") && text.ends_with(": landing"))
+    );
+    assert!(bench.texts().iter().all(|text| !text.contains("position known")), "{:?}", bench.texts());
 }

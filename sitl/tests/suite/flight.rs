@@ -399,3 +399,14 @@ fn messages_keep_their_rates() {
     assert_eq!(count(33), 0);
     assert_eq!(count(32), 100, "LOCAL_POSITION_NED at 10 Hz");
 }
+
+/// A height above home, sent as the altitude above sea level that PX4 takes it for.
+#[test]
+fn an_altitude_below_home_is_explained() {
+    let mut bench = Bench::new(Identity::Px4);
+    let [zero, nan] = [0.0, f32::NAN];
+    bench.arm();
+    assert_eq!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, [zero, zero, zero, nan, nan, nan, 10.0]), 0);
+    let told = "Takeoff altitude 10.0 m above sea level, home is at 488.0 m: using default";
+    assert!(bench.texts().contains(&told.to_owned()), "{:?}", bench.texts());
+}

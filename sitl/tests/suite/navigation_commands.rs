@@ -294,3 +294,14 @@ fn px4_stores_no_parameters_while_armed() {
     assert_eq!(bench.command(MavCmd::MAV_CMD_PREFLIGHT_STORAGE, write), TEMPORARILY_REJECTED);
     assert_eq!(Bench::new(Identity::Px4).command(MavCmd::MAV_CMD_PREFLIGHT_STORAGE, write), 0);
 }
+
+/// A message that can be streamed has no interval that is no number.
+#[test]
+fn an_interval_that_is_no_number_is_denied_as_such() {
+    let mut bench = Bench::new(Identity::Px4);
+    let parameters = [33.0, f32::NAN, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let denied = MavResult::MAV_RESULT_DENIED as u8;
+    assert_eq!(bench.command(MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL, parameters), denied);
+    let told = "Message interval denied: NaN; send microseconds, 0 (default) or -1 (never)";
+    assert!(bench.texts().contains(&told.to_owned()), "{:?}", bench.texts());
+}

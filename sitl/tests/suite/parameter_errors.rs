@@ -2,7 +2,7 @@
 
 use crate::common;
 use crate::common::Bench;
-use crate::common::requests::set_parameter;
+use crate::common::requests::{set_parameter, set_parameter_as};
 use autopilot::codec::Message;
 use mavlink::dialects::ardupilotmega::*;
 use vehicle::identity::Identity;
@@ -61,4 +61,37 @@ fn every_refusal_is_answered_with_its_reason() {
         assert_eq!(errors(&mut bench, set_parameter("FRAME_MASS", 0.75)), []);
         assert_eq!(errors(&mut bench, read("FRAME_MASS", -1)), []);
     }
+}
+
+/// MAVSDK takes the first answer for that to its request: why it was refused comes before what the value still is.
+#[test]
+fn a_refusal_is_told_before_the_present_value() {
+    for identity in [Identity::Px4, Identity::ArduPilot] {
+        let mut bench = Bench::new(identity);
+        bench.heard.clear();
+        bench.send(set_parameter("FRAME_MASS", 99.0));
+        let answers = bench.heard.iter().filter_map(|message| match message {
+            Message::Typed(MavMessage::PARAM_ERROR(_)) => Some("why"),
+            Message::Typed(MavMessage::PARAM_VALUE(_)) => Some("value"),
+            _ => None,
+        });
+        assert_eq!(answers.collect::<Vec<_>>(), ["why", "value"], "{identity:?}");
+    }
+}
+
+/// The bytes of an integer are no real number; ArduPilot converts what it is sent.
+#[test]
+fn an_integer_does_not_change_a_real_parameter_of_px4() {
+    let integer = MavParamType::MAV_PARAM_TYPE_INT32;
+    let mut bench = Bench::new(Identity::Px4);
+    let mass = |bench: &Bench| bench.autopilot.vehicle().kept_configuration().airframe.mass_kg;
+    let before = mass(&bench);
+    let sent = set_parameter_as("FRAME_MASS", f32::from_bits(1), integer);
+    let mismatch = MavParamError::MAV_PARAM_ERROR_TYPE_MISMATCH;
+    assert_eq!(errors(&mut bench, sent), [("FRAME_MASS".to_owned(), -1, mismatch)]);
+    assert_eq!(mass(&bench), before);
+    assert!(bench.texts().contains(&"FRAME_MASS is a real number: set it as REAL32".to_owned()));
+    let mut bench = Bench::new(Identity::ArduPilot);
+    assert_eq!(errors(&mut bench, set_parameter_as("FRAME_MASS", 1.0, integer)), []);
+    assert_eq!(mass(&bench), 1.0);
 }

@@ -117,6 +117,19 @@ fn each_fault_has_its_result_and_names_its_item_and_the_old_plan_stays() {
     assert_eq!(client.plan(PlanKind::Mission), old);
 }
 
+/// A waypoint of PX4 keeps its height then.
+#[test]
+fn a_mission_of_ardupilot_needs_altitudes() {
+    let mut client = Client::of(Identity::ArduPilot);
+    let good = waypoint(1.0, 10.0);
+    let [latitude, longitude, _] = good.position;
+    let open = MissionItem { position: [latitude, longitude, f64::NAN], ..good };
+    let heard = client.upload(PlanKind::Mission, &[good, good, open]);
+    assert_eq!(result(&heard), Some(MavMissionResult::MAV_MISSION_INVALID_PARAM7 as u8));
+    let text = texts(heard);
+    assert!(text.contains("item 2") && text.contains("an altitude is required"), "{text}");
+}
+
 #[test]
 fn items_out_of_order_and_copies_do_no_harm() {
     let mut client = Client::new();

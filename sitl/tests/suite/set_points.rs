@@ -256,6 +256,8 @@ fn what_means_nothing_is_refused_and_says_so() {
     // With an acceleration: it would be a force.
     refused(&local(ned, 0b1110_0011_1111, [1.0; 3], [0.0; 3]), "force is not supported");
     refused(&local(ned, POSITION_ONLY, [f32::NAN; 3], [0.0; 3]), nothing);
+    let fast = local(ned, VELOCITY_ONLY, [0.0; 3], [300.0, 0.0, 0.0]);
+    refused(&fast, "Set-point rejected: velocity 300.00 m/s; allowed -50 to 50 m/s");
     refused(&local(MavFrame::MAV_FRAME_BODY_FRD, POSITION_ONLY, [1.0; 3], [0.0; 3]), "frame 12");
     refused(&local(MavFrame::MAV_FRAME_BODY_NED, POSITION_ONLY, [1.0; 3], [0.0; 3]), nothing);
 }
@@ -287,6 +289,26 @@ fn a_position_with_a_velocity_runs_on_until_it_is_lost() {
     assert!(bench.texts().iter().any(|text| text == "Set-points lost: holding"), "{:?}", bench.texts());
     bench.fly(6.0);
     assert!(bench.velocity()[0].abs() < 0.02);
+}
+
+#[test]
+fn an_attitude_without_thrust_names_the_bit_of_the_mask() {
+    let mut bench = Bench::hovering(Identity::Px4);
+    for (mask, thrust, told) in [
+        (64, 0.5, "Attitude rejected: send thrust; clear mask bit 64"),
+        (0, 1.5, "Attitude rejected: thrust must be from 0 to 1"),
+    ] {
+        bench.heard.clear();
+        bench.send(MavMessage::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
+            target_system: 1,
+            target_component: 1,
+            type_mask: AttitudeTargetTypemask::from_bits_retain(mask),
+            q: [1.0, 0.0, 0.0, 0.0],
+            thrust,
+            ..SET_ATTITUDE_TARGET_DATA::default()
+        }));
+        assert_eq!(bench.texts(), [told]);
+    }
 }
 
 #[test]

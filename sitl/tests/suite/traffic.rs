@@ -66,7 +66,7 @@ fn ardupilot_returns_from_what_comes_too_near_and_resumes() {
     assert_eq!(collision.threat_level, MavCollisionThreatLevel::MAV_COLLISION_THREAT_LEVEL_HIGH);
     assert_eq!(collision.action, MavCollisionAction::MAV_COLLISION_ACTION_RTL);
     assert!((collision.horizontal_minimum_delta - 80.0).abs() < 1.0, "{collision:?}");
-    let alert = bench.texts().into_iter().find(|text| text.starts_with("Traffic alert: bob, 80 m away"));
+    let alert = bench.texts().into_iter().find(|text| text.starts_with("Traffic alert: bob, 80 m away, "));
     assert!(alert.is_some_and(|text| text.ends_with(": returning")), "{:?}", bench.texts());
     // Nothing is heard of it for five seconds, and two more pass.
     bench.fly(7.5);

@@ -85,6 +85,14 @@ fn it_holds_just_below_the_limit_and_not_above() {
 }
 
 #[test]
+fn the_page_names_the_limit() {
+    let page = include_str!("../../../book/src/vehicle/wind-and-sensors.md");
+    let limit_m_s = limit_m_s(&Configuration::default());
+    let named = format!("{limit_m_s:.1} m/s with the default limits and a drag of {DRAG_N_S_M} N·s/m");
+    assert!(page.contains(&named), "{named}");
+}
+
+#[test]
 fn gusts_are_held_with_three_standard_deviations_of_room_and_not_with_one_and_a_half() {
     let configuration = Configuration::default();
     let worst_m = |deviations: f64| {

@@ -4,11 +4,13 @@ import math
 
 import pytest
 from mavsdk.plugins.action import Action
+from mavsdk.plugins.action.action import ActionError, ActionResult
 from mavsdk.plugins.events import Events
 from mavsdk.plugins.events.events import EventsError
 from mavsdk.plugins.info import Info
 from mavsdk.plugins.offboard import Offboard, PositionNedYaw, VelocityBodyYawspeed, VelocityNedYaw
 from mavsdk.plugins.param import Param
+from mavsdk.plugins.param.param import ParamError, ParamResult
 from mavsdk.plugins.telemetry import FlightMode, Telemetry
 from mavsdk.plugins.winch import Winch
 from mavsdk.plugins.winch.winch import WinchError, WinchResult
@@ -83,6 +85,21 @@ def test_parameters(fly):
     param.set_param_int("COM_OBL_RC_ACT", 4)
     value = param.get_param_int("COM_OBL_RC_ACT")
     assert (value[1] if isinstance(value, tuple) else value) == 4
+
+
+def test_a_refused_parameter_leaves_no_answer_for_the_next(fly):
+    system = fly()
+    action, param = Action(system), Param(system)
+    for height in (15.0, 16.0, 17.0):
+        with pytest.raises(ActionError) as refused:
+            action.set_takeoff_altitude(-3.0)
+        assert refused.value.result == ActionResult.PARAMETER_ERROR
+        action.set_takeoff_altitude(height)
+        value = action.get_takeoff_altitude()
+        assert (value[1] if isinstance(value, tuple) else value) == height
+    with pytest.raises(ParamError) as refused:
+        param.set_param_int("FRAME_MASS", 1)
+    assert refused.value.result == ParamResult.TYPE_MISMATCH
 
 
 def test_what_is_not_there_is_refused(fly):

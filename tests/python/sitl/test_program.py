@@ -28,6 +28,11 @@ def run(program, *arguments, environment=None, timeout=60):
     (("--gusts", "99"), 2, "--gusts: `99` is not a number from 0 to 10"),
     (("--system-id", "x"), 2, "--system-id: `x` is not a whole number from 1 to 250"),
     (("--seed", "-1"), 2, "--seed: must be a non-negative integer, not `-1`"),
+    (("--rc-port", "x"), 2, "--rc-port: `x` is not a whole number from 0 to 65535"),
+    (("--rc-port", "99999"), 2, "--rc-port: `99999` is not a whole number from 0 to 65535"),
+    (("--rc-port", "-1"), 2, "--rc-port: `-1` is not a whole number from 0 to 65535"),
+    (("--view", "-1"), 2, "--view: invalid address `-1`; use [HOST:]PORT"),
+    (("--hil", "-1"), 2, "--hil: invalid address `-1`; use [HOST:]PORT"),
     (("--autopilot", "betaflight"), 2, "--autopilot: must be px4, ardupilot or generic, not `betaflight`"),
     (("--airframe", "crazyfly"), 2, "--airframe: unknown airframe `crazyfly`; allowed paper, crazyflie, hummingbird, iris, heavy or a FILE.toml; did you mean crazyflie?"),
     (("--airframe", "/does/not/exist.toml"), 4, "cannot read /does/not/exist.toml"),
@@ -47,6 +52,8 @@ def run(program, *arguments, environment=None, timeout=60):
     (("--wind", "31"), 2, "--wind: invalid wind `31`; use SPEED[,FROM]: 0 to 30 m/s"),
     (("--formation", "row"), 2, "--formation: invalid formation `row`; use line, grid or circle"),
     (("--ftp-write",), 2, "--ftp-write: needs --ftp-root"),
+    (("--traffic", "fleet"), 2, "--traffic fleet: needs --vehicles 2 or more"),
+    (("--fault", "5:gps=slow"), 2, "ideal sensors can only be `off`, `stuck` or `intermittent`"),
     (("--system-id", "249", "--vehicles", "3"), 2, "need system ids up to 251; the largest is 250"),
     (("--hil", "4560", "--speed", "0"), 2, "--speed: 0 does not go with --hil"),
     (("--log-start", "later"), 2, "--log-start: must be `arm` or `boot`, not `later`"),
@@ -66,6 +73,34 @@ def test_a_mistake_is_one_clear_line(program, arguments, code, words):
     assert result.returncode == code, result.stderr
     assert words in result.stderr, result.stderr
     assert result.stderr.startswith("lmpc-sitl: ") and len(result.stderr.splitlines()) == 1 and not result.stdout, result
+
+
+@pytest.mark.parametrize("conventions", ["px4", "ardupilot"])
+def test_an_empty_plan_is_not_started(program, tmp_path, conventions):
+    plan = tmp_path / "empty.txt"
+    plan.write_text("QGC WPL 110\n")
+    arguments = ("--link", "udpin:0", "--duration", "0", "--autopilot", conventions, "--mission", plan)
+    assert run(program, *arguments).returncode == 0
+    result = run(program, *arguments, "--autostart")
+    assert result.returncode == 2
+    assert result.stderr == f"lmpc-sitl: --autostart: `{plan}` has no mission items to start; add one, or leave the flag out\n"
+
+
+@pytest.mark.parametrize("fault", ["off", "stuck", "intermittent"])
+def test_ideal_sensors_fall_silent(program, fault):
+    result = run(program, "--link", "udpin:0", "--speed", "max", "--duration", "1", "--fault", f"0.5:gps={fault}")
+    assert result.returncode == 0 and f"Failure injected: gps={fault}" in result.stderr, result.stderr
+
+
+def test_a_record_holds_the_state_of_each_simulated_second(program, tmp_path):
+    record = tmp_path / "flight.lmpc"
+    result = run(program, "--link", "udpin:0", "--speed", "max", "--duration", "12.5", "--vehicles", "2", "--record", record)
+    assert result.returncode == 0, result.stderr
+    for vehicle in ("0", "1"):
+        states = [line.split() for line in records.entries(record) if line.startswith("state ")]
+        seconds = [int(time) // 1_000_000 for _, time, number, _ in states if number == vehicle]
+        assert seconds == list(range(1, 13)), states
+    assert run(program, "--replay", record).returncode == 0
 
 
 def test_a_mistake_in_the_environment_names_the_variable(program):
@@ -115,6 +150,12 @@ def test_a_port_that_is_taken(program):
         result = run(program, "--link", f"tcpin:{taken.getsockname()[1]}")
     assert result.returncode == 3 and len(result.stderr.splitlines()) == 1, result.stderr
     assert "--instance" in result.stderr
+
+
+def test_a_file_that_cannot_be_written_is_named_as_its_user_knows_it(program):
+    result = run(program, "--ready-file", "/no/such/folder/ready", "--link", "udpin:0")
+    assert result.returncode == 4
+    assert result.stderr.endswith("lmpc-sitl: cannot write /no/such/folder/ready: No such file or directory (os error 2)\n"), result.stderr
 
 
 def test_an_old_ready_file_is_not_taken_for_a_new_one(program, tmp_path):

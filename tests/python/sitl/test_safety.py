@@ -37,7 +37,7 @@ OUTSIDE = mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION
 INVALID, INVALID_RADIUS = mavlink.MAV_MISSION_INVALID, mavlink.MAV_MISSION_INVALID_PARAM1
 MEANINGLESS = {
     "two corners": ([(INSIDE, 2, 0, 0), (INSIDE, 2, 9, 0)], INVALID_RADIUS, "item 1: corner count = 2"),
-    "crossing sides": ([(INSIDE, 4, *SQUARE[corner]) for corner in (0, 2, 1, 3)], INVALID, "sides 0 and 2 cross"),
+    "crossing sides": ([(INSIDE, 4, *SQUARE[corner]) for corner in (0, 2, 1, 3)], INVALID, "sides 1 and 3 cross; the first is 1"),
     "no area": ([(INSIDE, 3, 5, 5)] * 3, INVALID, "all corners lie on one line"),
     "corners of another kind": ([(INSIDE, 3, 0, 0), (OUTSIDE, 3, 9, 0), (INSIDE, 3, 9, 9)], INVALID, "item 2: this polygon"),
     "a corner missing": ([(INSIDE, 4, *corner) for corner in SQUARE[:3]], INVALID, "needs 4 consecutive corners"),
@@ -53,8 +53,7 @@ MEANINGLESS = {
 def told(client, words):
     """Waits for words in the lines for the pilot, whose pieces are joined."""
     whole = ""
-    # Pieces are filled up with spaces.
-    while words not in " ".join(whole.split()):
+    while words not in whole:
         whole += client.wait("STATUSTEXT", timeout=3).text
 
 

@@ -18,8 +18,8 @@ pub enum PolygonFault {
     /// All corners are on one line, or nearly.
     #[error("all corners lie on one line; it must be at least {NARROWEST_M} m wide")]
     Flat,
-    /// Two sides cross or touch; sides are numbered by their first corners.
-    #[error("sides {0} and {1} cross")]
+    /// Two sides cross or touch; sides are counted from zero, and begin at the corner of their number. A person counts from one.
+    #[error("sides {} and {} cross; the first is 1", .0 + 1, .1 + 1)]
     Crossing(usize, usize),
 }
 
@@ -257,6 +257,7 @@ mod tests {
         assert_eq!(Polygon::new(square[..2].to_vec()), Err(PolygonFault::TooFew(2)));
         let [a, b, c, d] = square;
         assert_eq!(Polygon::new(vec![a, c, b, d]), Err(PolygonFault::Crossing(0, 2)));
+        assert_eq!(PolygonFault::Crossing(0, 2).to_string(), "sides 1 and 3 cross; the first is 1");
         assert_eq!(Polygon::new(vec![a, b, b, c]), Err(PolygonFault::Crossing(0, 1)));
         assert_eq!(Polygon::new(vec![a, b, a, c]), Err(PolygonFault::Crossing(0, 1)));
         // On one line, but for the rounding of latitudes and longitudes; a thin wall is none.

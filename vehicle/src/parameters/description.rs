@@ -41,6 +41,8 @@ impl Description {
             return names.collect::<Vec<_>>().join(", ");
         }
         let range = self.shown_range();
+        let (minimum, maximum) = (-short_below(-range.minimum), short_below(range.maximum));
+        let range = if self.whole { range } else { ValueRange { minimum, maximum, ..range } };
         if self.whole { format!("whole numbers {range}") } else { range.to_string() }
     }
 
@@ -52,6 +54,23 @@ impl Description {
     fn shown_range(&self) -> ValueRange {
         ValueRange { unit: if self.range.unit == SHARE { "" } else { self.range.unit }, ..self.range }
     }
+}
+
+/// A bound that can be read: one with many digits, as in another unit, becomes one with few that is allowed, too.
+fn short_below(bound: f64) -> f64 {
+    const FEW: i32 = 4;
+    const MANY: i32 = 6;
+    if bound == 0.0 || !bound.is_finite() {
+        return bound;
+    }
+    let digits_before = libm::floor(libm::log10(libm::fabs(bound))) as i32 + 1;
+    let step = |digits: i32| libm::pow(10.0, f64::from(digits - digits_before));
+    let readable = libm::round(bound * step(MANY)) / step(MANY);
+    // What is off by the rounding of doubles, or of single precision, is meant.
+    if (readable - bound).abs() <= 1e-7 * bound.abs() {
+        return bound;
+    }
+    libm::floor(bound * step(FEW)) / step(FEW)
 }
 
 impl Entry {
@@ -239,5 +258,12 @@ mod tests {
         let table = ParameterTable::new(Identity::ArduPilot);
         let range = table.find("RTL_ALT").expect("there").describe().range;
         assert_eq!((range.unit, range.minimum, range.maximum), ("cm", 100.0, 100_000.0));
+    }
+    /// Its bounds are 0.05 and 1.2 rad, in degrees 2.8648 and 68.7549: what is named is allowed.
+    #[test]
+    fn a_bound_in_another_unit_has_few_digits_and_is_allowed() {
+        let table = ParameterTable::new(Identity::Px4);
+        assert_eq!(table.find("MPC_TILTMAX_AIR").expect("there").allowed(), "2.865–68.75 deg");
+        assert_eq!(table.find("LIM_TILT").expect("there").allowed(), "0.05–1.2 rad (3°–69°)");
     }
 }

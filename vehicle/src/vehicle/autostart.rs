@@ -3,10 +3,17 @@
 /// How often the obstacles to arming are looked at, µs.
 const PERIOD_US: u64 = 100_000;
 
+/// What keeps the vehicle from starting is told again after so long, µs.
+const TOLD_US: u64 = 5_000_000;
+/// Instruments need so long, µs, to find their place: they are waited for without a word.
+const PATIENCE_US: u64 = 3_000_000;
+
 /// Whether the mission is still to be started.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Autostart {
     stage: Stage,
+    /// What was told last to be in the way, and when, µs.
+    told: Option<(String, u64)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -34,11 +41,11 @@ pub enum Step {
 impl Autostart {
     /// Asked for or not.
     pub fn new(asked: bool) -> Self {
-        Self { stage: if asked { Stage::Begin } else { Stage::Idle } }
+        Self { stage: if asked { Stage::Begin } else { Stage::Idle }, told: None }
     }
 
     /// Whether the mission is still to be started.
-    pub fn is_pending(self) -> bool {
+    pub fn is_pending(&self) -> bool {
         self.stage != Stage::Idle
     }
 
@@ -59,11 +66,22 @@ impl Autostart {
             Stage::Arm => Step::None,
         }
     }
+
+    /// Takes in what is in the way at a time, µs; returns whether to tell it: when it has changed, and again after a while.
+    pub fn waits_for(&mut self, time_us: u64, reason: &str) -> bool {
+        let known =
+            self.told.as_ref().is_some_and(|(told, at_us)| told == reason && time_us < at_us + TOLD_US);
+        if known || time_us < PATIENCE_US {
+            return false;
+        }
+        self.told = Some((reason.to_owned(), time_us));
+        true
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Autostart, PERIOD_US, Step};
+    use super::{Autostart, PATIENCE_US, PERIOD_US, Step, TOLD_US};
 
     #[test]
     fn it_enters_the_mode_then_arms_until_it_is_armed() {
@@ -83,5 +101,16 @@ mod tests {
         assert_eq!(autostart.step(PERIOD_US, false, false), Step::None);
         assert!(!autostart.is_pending());
         assert_eq!(Autostart::new(false).step(PERIOD_US, false, true), Step::None);
+    }
+    #[test]
+    fn what_is_in_the_way_is_told_when_it_changes_and_again_after_a_while() {
+        let mut autostart = Autostart::new(true);
+        let mut told = |time_us, reason| autostart.waits_for(time_us, reason);
+        assert!(!told(0, "no GPS"), "it may come");
+        assert!(told(PATIENCE_US, "no GPS"));
+        assert!(!told(PATIENCE_US + PERIOD_US, "no GPS"));
+        assert!(told(PATIENCE_US + 2 * PERIOD_US, "battery"));
+        assert!(!told(PATIENCE_US + 2 * PERIOD_US + TOLD_US - 1, "battery"));
+        assert!(told(PATIENCE_US + 2 * PERIOD_US + TOLD_US, "battery"));
     }
 }

@@ -68,7 +68,10 @@ impl Failsafe {
         present: bool,
     ) -> Option<Change> {
         // Mostly there is none: what it would lead to is not looked for.
-        let change = self.see(cause, present, situation.time_us)?;
+        let change = match self.see(cause, present, situation.time_us) {
+            None if present && situation.flies() && self.take_off_with(cause) => Change::Begun,
+            change => change?,
+        };
         let response = response(situation, cause);
         match change {
             _ if response.action == Action::None => {}
@@ -78,6 +81,8 @@ impl Failsafe {
             Change::Begun => self.act(situation, proposal, cause, response),
             // A rotor that stands tells nothing, and its loss has just ended the flight.
             Change::Ended if cause == Cause::RotorFailure && !situation.armed => {}
+            // The flight is over, or the mode needs no place: it is lost all the same.
+            Change::Ended if cause == Cause::PositionLost && !situation.knows_its_place() => {}
             Change::Ended => proposal.say(Severity::Info, cleared(situation, cause)),
         }
         Some(change)
@@ -89,6 +94,9 @@ impl Failsafe {
         let acts = flying && goes_on.is_none() && self.goes_before(action, Action::of_mode(situation.mode));
         let why = format!("{}{}", name(situation, cause), self.details(situation, cause));
         tracing::debug!(cause = why, ?action, flying, acts, "failsafe");
+        if !flying && action > Action::Warn && cause.leaves_no_choice() {
+            self.wait_for_takeoff(cause);
+        }
         if !acts {
             let meanwhile = match (flying, goes_on) {
                 (true, Some(words)) => format!(" - {words}"),
@@ -184,6 +192,20 @@ impl Failsafe {
         self.present().filter(speaks).map(|cause| format!("failsafe: {}", lower(cause)))
     }
 
+    /// Whether an armed vehicle on the ground may take off.
+    ///
+    /// # Errors
+    /// [`Refusal::TemporarilyRejected`] while the place is not known: it would only land again. [`Refusal::Failed`] in ArduPilot.
+    pub fn may_take_off(&self, situation: &Situation) -> Result<(), Refusal> {
+        let ardupilot = situation.identity.is_ardupilot();
+        let acts = ardupilot || situation.conduct.failsafe.position_lost >= Action::Altitude;
+        if !situation.armed || !acts || situation.can_fly(Mode::Takeoff) {
+            return Ok(());
+        }
+        let reason = "Takeoff rejected: position lost, only landing is possible";
+        Err(if ardupilot { Refusal::Failed(reason.to_owned()) } else { Refusal::later(reason) })
+    }
+
     /// Whether a user may choose a mode now.
     ///
     /// # Errors
@@ -266,6 +288,48 @@ mod tests {
                 lines,
                 "{armed}"
             );
+        }
+    }
+
+    #[test]
+    fn a_position_that_is_still_lost_is_not_called_known() {
+        for (known, lines) in [(true, vec!["Failsafe cleared: position known"]), (false, vec![])] {
+            let mut scene = Scene::hovering_at([0.0, 0.0, -10.0]);
+            scene.conduct.failsafe.position_lost = Action::Land;
+            scene.validity.horizontal_position = false;
+            let mut failsafe = Failsafe::default();
+            take_in(&mut failsafe, &mut scene, Cause::PositionLost, true);
+            (scene.armed, scene.validity.horizontal_position) = (false, known);
+            take_in(&mut failsafe, &mut scene, Cause::PositionLost, false);
+            scene.wait_us(10_000_000);
+            let requests = take_in(&mut failsafe, &mut scene, Cause::PositionLost, false);
+            assert_eq!(said(&requests), lines, "{known}");
+        }
+    }
+
+    #[test]
+    fn what_leaves_no_choice_acts_when_the_vehicle_takes_off_with_it() {
+        for (cause, acts) in
+            [(Cause::PositionLost, true), (Cause::RotorFailure, true), (Cause::HighWind, false)]
+        {
+            let mut failsafe = Failsafe::default();
+            let mut scene = Scene::on_the_ground();
+            let settings = &mut scene.conduct.failsafe;
+            (settings.position_lost, settings.rotor_failure, settings.high_wind) =
+                (Action::Land, Action::Land, Action::Land);
+            let grounded = scene.conduct;
+            let requests = take_in(&mut failsafe, &mut scene, cause, true);
+            assert!(!requests.contains(&Request::Enter(Mode::Land)), "{cause:?} {requests:?}");
+            let mut scene = Scene::hovering_at([0.0, 0.0, -1.0]);
+            scene.conduct = grounded;
+            for expected in [acts, false] {
+                let requests = take_in(&mut failsafe, &mut scene, cause, true);
+                assert_eq!(
+                    requests.contains(&Request::Enter(Mode::Land)),
+                    expected,
+                    "{cause:?} {requests:?}"
+                );
+            }
         }
     }
 

@@ -169,8 +169,10 @@ impl TrafficWatch {
     }
 
     fn act(&mut self, situation: &Situation, proposal: &mut Proposal, encounter: &Encounter) {
-        let [horizontal_m, vertical_m] =
-            separation_m(&encounter.aircraft, &situation.outputs.position_m, situation.time_us);
+        let place_m = &situation.outputs.position_m;
+        let [horizontal_m, vertical_m] = separation_m(&encounter.aircraft, place_m, situation.time_us);
+        let is_above = encounter.aircraft.position_at_m(situation.time_us).z < place_m.z;
+        let side = if is_above { "above" } else { "below" };
         let action = encounter.action;
         if action == Action::None {
             return;
@@ -180,7 +182,7 @@ impl TrafficWatch {
         let name = encounter.aircraft.name();
         proposal.say(
             if enters.is_some() { Severity::Critical } else { Severity::Warning },
-            format!("Traffic alert: {name}, {horizontal_m:.0} m away, {vertical_m:.0} m up or down: {doing}"),
+            format!("Traffic alert: {name}, {horizontal_m:.0} m away, {vertical_m:.0} m {side}: {doing}"),
         );
         if let Some(mode) = enters {
             self.interrupted = Some((situation.mode, mode));
@@ -265,7 +267,7 @@ mod tests {
     use crate::identity::Identity;
     use crate::vehicle::Conduct;
     use crate::vehicle::proposal::Request;
-    use crate::vehicle::scene::Scene;
+    use crate::vehicle::scene::{Scene, said};
 
     fn aircraft(position_m: [f64; 3], velocity_m_s: [f64; 3], heard_us: u64) -> Aircraft {
         let (position_m, velocity_m_s) = (Vector3::from(position_m), Vector3::from(velocity_m_s));
@@ -307,6 +309,18 @@ mod tests {
         ] {
             let found = encounter(&scene.situation(), &aircraft(position, velocity, time_us));
             assert_eq!(found.threat, expected, "{position:?} {velocity:?}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn an_alert_says_on_which_side_the_aircraft_is() {
+        for (z_m, told) in [(-70.0, "20 m above"), (-30.0, "20 m below")] {
+            let mut scene = scene();
+            let mut watch = TrafficWatch::default();
+            watch.hear(aircraft([60.0, 0.0, z_m], [0.0; 3], scene.outputs.time_us), &Vector3::zeros());
+            let mut requests = scene.show(|situation, proposal| watch.watch(situation, proposal));
+            requests.retain(|request| matches!(request, Request::Say(_)));
+            assert_eq!(said(&requests), [format!("Traffic alert: BOB, 60 m away, {told}: returning")]);
         }
     }
 

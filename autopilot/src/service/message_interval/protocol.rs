@@ -134,7 +134,11 @@ impl MessageIntervals {
         let stream = context.streams.get(number).filter(|stream| stream.is_regular()).ok_or_else(unknown)?;
         let schedule = self.links.get_mut(link).ok_or_else(unknown)?;
         let interval = match command.parameter(2) {
-            value if value.is_nan() => return Err(unknown()),
+            value if value.is_nan() => {
+                return Err(Refusal::denied(
+                    "Message interval denied: NaN; send microseconds, 0 (default) or -1 (never)",
+                ));
+            }
             0.0 => Interval::Default,
             interval_us if interval_us > 0.0 => Interval::Each(interval_us as u64),
             _ => Interval::Never,

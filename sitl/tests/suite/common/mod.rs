@@ -136,8 +136,7 @@ impl Bench {
                 _ => texts.push((text.id, piece.to_owned())),
             }
         }
-        // Pieces that are not the last one are filled up with spaces.
-        texts.into_iter().map(|(_, text)| text.split_whitespace().collect::<Vec<_>>().join(" ")).collect()
+        texts.into_iter().map(|(_, text)| text).collect()
     }
 
     pub fn parameters(&self) -> Vec<PARAM_VALUE_DATA> {

@@ -82,7 +82,7 @@ fn with_parachute(option: f64) -> Flier {
     flier
 }
 
-const DEPLOYED: &str = "BANG! Parachute deployed";
+const DEPLOYED: &str = "BANG!  Parachute deployed";
 
 fn order(flier: &mut Flier, action: f32) {
     let parameters = [action, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];

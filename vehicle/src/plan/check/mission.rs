@@ -79,7 +79,12 @@ fn check_place(rule: PlaceRule, item: &MissionItem, site: &Site) -> Result<(), I
     if !named {
         return Ok(());
     }
-    place(item, site).map(drop)
+    place(item, site)?;
+    // PX4's convention leaves the height as it is; ArduPilot has none that is open.
+    if site.identity.is_ardupilot() && item.position[2].is_nan() {
+        return Err((FaultCode::InvalidParameter(7), "an altitude is required".to_owned()));
+    }
+    Ok(())
 }
 
 /// Checks how the items belong together: a jump goes to an item that there is.

@@ -72,6 +72,11 @@ impl Cause {
         }
     }
 
+    /// Whether nobody may fly on while it lasts: the vehicle only lands.
+    pub fn leaves_no_choice(self) -> bool {
+        matches!(self, Self::PositionLost | Self::RotorFailure)
+    }
+
     /// Whether the flight is about to end by itself, for the system status in HEARTBEAT.
     pub fn is_emergency(self) -> bool {
         matches!(self, Self::RotorFailure | Self::BatteryEmergency)

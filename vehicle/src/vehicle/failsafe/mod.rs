@@ -8,7 +8,8 @@
 //!
 //! A cause acts when it begins. After that the pilot decides: a mode that a user chooses is taken, and the failsafe acts again
 //! when another cause begins or the same one comes back. Two causes leave no choice while they last: without an estimate of
-//! its place, and without a rotor, the vehicle only lands.
+//! its place, and without a rotor, the vehicle only lands. If one of them began on the ground, it acts as soon as the vehicle
+//! takes off.
 
 mod action;
 mod cause;

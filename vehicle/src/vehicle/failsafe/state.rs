@@ -13,6 +13,8 @@ struct Seen {
     cause: Cause,
     /// When it will be over unless it comes back, µs; `None` while it is there.
     over_us: Option<u64>,
+    /// Whether it is to act as soon as the vehicle takes off.
+    waits: bool,
 }
 
 /// State of the failsafe.
@@ -98,7 +100,7 @@ impl Failsafe {
             if !present {
                 return None;
             }
-            self.seen.push(Seen { cause, over_us: None });
+            self.seen.push(Seen { cause, over_us: None, waits: false });
             return Some(Change::Begun);
         };
         if present {
@@ -110,6 +112,19 @@ impl Failsafe {
         }
         self.forget(cause);
         Some(Change::Ended)
+    }
+
+    /// A cause that is there acts as soon as the vehicle takes off.
+    pub fn wait_for_takeoff(&mut self, cause: Cause) {
+        if let Some(seen) = self.seen.iter_mut().find(|seen| seen.cause == cause) {
+            seen.waits = true;
+        }
+    }
+
+    /// Takes in that the vehicle flies while a cause is there; returns whether that was waited for.
+    pub fn take_off_with(&mut self, cause: Cause) -> bool {
+        let mut seen = self.seen.iter_mut().filter(|seen| seen.cause == cause);
+        seen.any(|seen| std::mem::take(&mut seen.waits))
     }
 
     /// A cause is over at once, and nobody needs to be told.

@@ -210,7 +210,8 @@ impl Mission {
     ) -> Result<(), Refusal> {
         let count = self.program.len();
         if index >= count {
-            return Err(Refusal::denied(format!("Mission item {index} does not exist; it has {count}")));
+            let reason = format!("Mission item {index} does not exist; the mission has {count}");
+            return Err(Refusal::denied(reason));
         }
         if reset {
             self.jumps.clear();

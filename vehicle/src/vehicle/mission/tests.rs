@@ -201,6 +201,6 @@ fn it_starts_with_what_there_is() {
     };
     assert_eq!(refusal(&mut mission(&[slow_down()]), None), "Mission rejected: no mission uploaded");
     let mut one = mission(&[waypoint([20.0, 0.0, -10.0])]);
-    assert_eq!(refusal(&mut one, Some(1)), "Mission item 1 does not exist; it has 1");
+    assert_eq!(refusal(&mut one, Some(1)), "Mission item 1 does not exist; the mission has 1");
     assert_eq!(one, mission(&[waypoint([20.0, 0.0, -10.0])]), "nothing has changed");
 }

@@ -1,8 +1,8 @@
 //! The plans that the vehicle starts with.
 
-use super::super::arming_obstacle::ArmingSubject;
+use super::super::arming_obstacle::{ArmingSubject, joined};
 use super::super::autostart::Step;
-use super::super::notice::Severity;
+use super::super::notice::{Refusal, Severity};
 use super::Vehicle;
 use crate::mode::Mode;
 use crate::plan::PlanKind;
@@ -35,26 +35,32 @@ impl Vehicle {
         }
     }
 
-    /// Whether at most the mode itself speaks against arming: whoever asked for the start has chosen it.
-    fn could_arm_in_another_mode(&self) -> bool {
-        self.arming_obstacles().iter().all(|obstacle| obstacle.subject == ArmingSubject::Mode)
-    }
-
-    /// Starts the mission of a vehicle that was told to start by itself.
+    /// Starts the mission of a vehicle that was told to start by itself, or tells what is in the way.
     pub(super) fn autostart(&mut self) {
         let (time_us, armed) = (self.time_us(), self.is_armed());
         let in_mission_mode = self.mode() == Mode::Mission;
         let done = match self.machines.autostart.step(time_us, armed, in_mission_mode) {
             Step::None => Ok(()),
             Step::EnterMission => self.enter_mission(None),
-            Step::Arm if self.could_arm_in_another_mode() => {
-                self.arm(true).map(|()| self.machines.consent.give())
-            }
-            Step::Arm => Ok(()),
+            Step::Arm => self.start_or_wait(),
         };
         if let Err(refusal) = done {
             self.decided.say(Severity::Warning, refusal.to_string());
         }
+    }
+
+    /// Arms unless something speaks against it. The mode itself does not: whoever asked for the start has chosen it.
+    fn start_or_wait(&mut self) -> Result<(), Refusal> {
+        let mut obstacles = self.arming_obstacles();
+        obstacles.retain(|obstacle| obstacle.subject != ArmingSubject::Mode);
+        if obstacles.is_empty() {
+            return self.arm(true).map(|()| self.machines.consent.give());
+        }
+        let (time_us, reason) = (self.time_us(), joined(&obstacles));
+        if self.machines.autostart.waits_for(time_us, &reason) {
+            self.decided.say(Severity::Warning, format!("Mission not started: {reason}"));
+        }
+        Ok(())
     }
 }
 

@@ -135,7 +135,8 @@ impl Vehicle {
             return Err(Refusal::denied("Failure injection rejected: set SYS_FAILURE_EN to 1"));
         }
         if self.navigation().is_none() && fault.needs_readings() {
-            let reason = "ideal sensors can only fail as off; start with --sensors realistic";
+            let reason =
+                "ideal sensors can only be off, stuck or intermittent; start with --sensors realistic";
             return Err(Refusal::Unsupported(format!("Failure injection: {fault}: {reason}")));
         }
         if let Some(model) =

@@ -50,6 +50,7 @@ impl Vehicle {
                 return Err(Refusal::Failed("Takeoff rejected: not in Guided mode".to_owned()));
             }
         }
+        self.machines.failsafe.may_take_off(&situation)?;
         self.enter(Mode::Takeoff);
         self.machines.takeoff.aim(z);
         Ok(())
@@ -97,6 +98,7 @@ impl Vehicle {
         if !situation.landed {
             return Err(Refusal::Failed("Takeoff rejected: already flying".to_owned()));
         }
+        self.may_enter(situation.mode)?;
         let z_m = situation.home.position_m.z - height_m.unwrap_or(situation.conduct.takeoff_height_m);
         let here_m = situation.outputs.position_m;
         if z_m >= here_m.z {
