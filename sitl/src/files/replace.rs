@@ -32,12 +32,15 @@ pub fn replace(path: &Path, content: &[u8], readers: Readers) -> io::Result<()> 
     Ok(())
 }
 
-/// Why no file can be made in a folder. The library's error names the file that was to take the other one's place, which nobody knows.
+/// Why no file can be made in a folder. The library's error ends with the place of the file that was to take the other one's, which nobody
+/// knows.
 fn unmade(folder: &Path, error: &io::Error) -> io::Error {
-    match std::fs::metadata(folder) {
-        Err(of_folder) => of_folder,
-        Ok(_) => error.kind().into(),
+    if let Err(of_folder) = std::fs::metadata(folder) {
+        return of_folder;
     }
+    let text = error.to_string();
+    let reason = text.split(" at path ").next().unwrap_or_default();
+    io::Error::new(error.kind(), reason.to_owned())
 }
 
 /// Lets the file's readers read it, and nobody else.

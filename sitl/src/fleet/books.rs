@@ -23,6 +23,8 @@ pub struct Books {
     traffic: Option<TrafficLog>,
     unix_start_us: u64,
     written: Instant,
+    /// Whether a state has been recorded since then.
+    is_state_new: bool,
 }
 
 impl Books {
@@ -41,7 +43,7 @@ impl Books {
             Some(path) => Some(TrafficLog::create(path, settings.logs.most_bytes, settings.logs.most_files)?),
             None => None,
         };
-        Ok(Self { recorder, traffic, unix_start_us, written: Instant::now() })
+        Ok(Self { recorder, traffic, unix_start_us, written: Instant::now(), is_state_new: false })
     }
 
     /// A frame is on a link.
@@ -93,6 +95,7 @@ impl Books {
         }
         if let Some(recorder) = &mut self.recorder {
             recorder.state(number, time_us, member.digest());
+            self.is_state_new = true;
         }
     }
 
@@ -110,13 +113,15 @@ impl Books {
         }
     }
 
-    /// Writes what waits, each second of the wall clock. Returns what to announce.
+    /// Writes what waits, each second of the wall clock, and the state of a flight at real time as soon as there is one: whoever ends the
+    /// program all at once loses a second. Returns what to announce.
     pub fn keep_up(&mut self, now: Instant) -> Vec<Notice> {
         let mut notices = Vec::new();
-        if now.saturating_duration_since(self.written) < WRITE_PERIOD {
+        let period = if self.is_state_new { WRITE_PERIOD / 2 } else { WRITE_PERIOD };
+        if now.saturating_duration_since(self.written) < period {
             return notices;
         }
-        self.written = now;
+        (self.written, self.is_state_new) = (now, false);
         notices.extend(self.recorder.as_mut().map(Recorder::flush).into_iter().flatten());
         notices.extend(self.traffic.as_mut().and_then(TrafficLog::flush));
         notices

@@ -224,8 +224,10 @@ def test_a_key_that_nobody_asked_for_is_refused(start, connect, program, tmp_pat
     pilot, attacker = connect(vehicle), connect(vehicle, system=66)
     for _ in range(100):
         attacker.mav.setup_signing_send(1, 1, list(KEY), 0)
-    pilot.wait("STATUSTEXT", lambda text: text.text.startswith("Signing: setup by 66/0 refused: restart with"))
-    pilot.wait("STATUSTEXT", lambda text: text.text.startswith("--accept-signing-setup"))
+    # Two pieces, one cut where it is full.
+    first = pilot.wait("STATUSTEXT", lambda text: text.text.startswith("Signing: setup by 66/0 refused: restart with"))
+    second = pilot.wait("STATUSTEXT", lambda text: text.id == first.id and text.chunk_seq == 1)
+    assert "restart with --accept-signing-setup to allow it" in first.text + second.text
     pilot.arm()
     pilot.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0)
     assert not pilot.wait("HEARTBEAT").get_header().incompat_flags & 1
