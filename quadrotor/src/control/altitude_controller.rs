@@ -66,14 +66,10 @@ impl AltitudeController {
         let model = design.altitude.motion.as_ref();
         // One that is estimated from noise or from places alone comes late enough.
         let lag_s = if design.estimator.disturbance_lag_s > 0.0 { 0.0 } else { LASTING_S };
-        let increment = self.observed.step(model, &motion, (sample_time_s, lag_s));
-        let passing = match model {
-            Some(model) if law.plans_increments() => self.observed.passing(model),
-            _ => Vector3::zeros(),
-        };
+        let [increment, passing] = self.observed.step(model, &motion, (sample_time_s, lag_s));
         let sample = Sample {
             measured,
-            increment: increment - passing,
+            increment,
             // What disturbs the vehicle accelerates it, too.
             deviation: deviation + Vector3::z() * seen.disturbance_m_s2,
             error,

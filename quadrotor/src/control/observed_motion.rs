@@ -155,14 +155,14 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
         self.disturbance
     }
 
-    /// The increment Δx(k) that a law goes by: of the motion that leads to the deviation, or as it was measured when there is no model.
-    /// A disturbance lasts when it has done so for as long as a lag, s; without one, at once.
+    /// The increment Δx(k) that a law goes by: of the motion that leads to the deviation, or as it was measured when there is no model. What of
+    /// it limits go by, and what passes: that of a disturbance which has not lasted for as long as a lag, s. Without a lag or a model nothing does.
     pub(crate) fn step(
         &mut self,
         model: Option<&MotionModel<N, P>>,
         seen: &MotionSample<N, P>,
         (sample_time_s, lag_s): (f64, f64),
-    ) -> SVector<f64, N> {
+    ) -> [SVector<f64, N>; 2] {
         let increment = match model {
             Some(model) => self.increment(model, seen),
             None => {
@@ -175,7 +175,8 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
         } else {
             self.lasting = self.disturbance;
         }
-        increment
+        let passing = model.map_or_else(SVector::zeros, |model| self.passing(model));
+        [increment - passing, passing]
     }
 
     /// A sample of a law that goes by measured increments, which another one may take over from: notes the deviation, and finds the
@@ -207,7 +208,7 @@ impl<const N: usize, const P: usize> ObservedMotion<N, P> {
 
     /// What of the last increment comes from a disturbance that has not lasted: A⁻¹ E (d − d̄), d̄ following d with the lag. Under noise,
     /// nobody knows it for a force sooner.
-    pub(crate) fn passing(&self, model: &MotionModel<N, P>) -> SVector<f64, N> {
+    fn passing(&self, model: &MotionModel<N, P>) -> SVector<f64, N> {
         model.inverse * model.by_disturbance * (self.disturbance - self.lasting)
     }
 
@@ -295,13 +296,13 @@ mod tests {
         // Another mass says nothing of a motion that nobody has seen.
         observed.believe(&Vector3::new(0.0, 0.0, 1.0));
         let start = Vector3::new(0.0, 0.7, 0.0);
-        let increment = observed.step(Some(&model), &seen(start, Vector3::zeros()), times);
+        let [increment, _] = observed.step(Some(&model), &seen(start, Vector3::zeros()), times);
         assert!(!begins(&observed) && observed.disturbance() == Vector1::zeros());
         assert!((increment - Vector3::new(0.7 * SAMPLE_TIME_S, 0.0, 0.0)).norm() < 1e-12, "{increment}");
         // 2 m/s² for a sample.
         let pushed =
             start + Vector3::new(0.7 * SAMPLE_TIME_S + SAMPLE_TIME_S.powi(2), 2.0 * SAMPLE_TIME_S, 0.0);
-        let increment = observed.step(Some(&model), &seen(pushed, start), times);
+        let [increment, _] = observed.step(Some(&model), &seen(pushed, start), times);
         assert!((observed.disturbance().x - 2.0).abs() < 1e-12);
         assert!((increment - (pushed - start)).norm() < 1e-12, "{increment}");
     }

@@ -188,7 +188,7 @@ impl PositionController {
         }
         // What the reference asks of a vehicle that does not move yet is a command.
         let own = [seen.acceleration_m_s2 + seen.disturbance_m_s2, seen.jerk_m_s3].map(|own| own.norm());
-        let beside = [2, 3].map(|of| Vector2::new(deviation[of], deviation[AXIS_STATES + of]).norm());
+        let beside = [2, 3].map(|of| derivative(deviation, of).norm());
         self.thrown =
             Thrown::taken_over(own[0].min(beside[0]), own[1].min(beside[1]), design.attitude_loop());
         let (law, model) = (&design.position.law, design.position.motion.as_ref());
@@ -214,12 +214,8 @@ impl PositionController {
         let model = design.position.motion.as_ref();
         let zero = Vector2::zeros();
         let thrown = if model.is_some() { *thrown } else { zero };
-        let increment = self.observed.step(model, motion, times);
-        let passing = match model {
-            Some(model) if design.position.law.plans_increments() => self.observed.passing(model),
-            _ => SVector::zeros(),
-        };
-        [increment - passing, passing + by_axis([zero, zero, zero, zero, thrown, zero])]
+        let [lasting, passing] = self.observed.step(model, motion, times);
+        [lasting, passing + by_axis([zero, zero, zero, zero, thrown, zero])]
     }
 
     /// A step of the law for a sample in turned axes, and its answer to what of the motion passes; its input is in those of the world.
@@ -262,10 +258,10 @@ impl PositionController {
     pub(crate) fn translate(&mut self, term: impl Fn(&Vector2<f64>) -> Vector2<f64>) {
         let applied = term(&self.controller.applied());
         let measured = |state: &SVector<f64, POSITION_STATES>| {
-            by_axis(core::array::from_fn(|derivative| {
-                let value = Vector2::new(state[derivative], state[AXIS_STATES + derivative]);
+            by_axis(core::array::from_fn(|of| {
+                let value = derivative(state, of);
                 // Position and velocity are what they are.
-                if derivative < 2 { value } else { term(&value) }
+                if of < 2 { value } else { term(&value) }
             }))
         };
         self.thrown.translate(&term);
@@ -394,6 +390,11 @@ fn by_axis(derivatives: [Vector2<f64>; AXIS_STATES]) -> SVector<f64, POSITION_ST
     SVector::from_fn(|state, _| derivatives[state % AXIS_STATES][state / AXIS_STATES])
 }
 
+/// A derivative of x and y in such a state.
+fn derivative(state: &SVector<f64, POSITION_STATES>, of: usize) -> Vector2<f64> {
+    Vector2::new(state[of], state[AXIS_STATES + of])
+}
+
 /// The error that the regulator may see.
 fn governed(
     configuration: &Configuration,
@@ -441,8 +442,6 @@ impl Turn {
 
     /// Of each derivative in a state by axis.
     fn state(&self, state: &SVector<f64, POSITION_STATES>) -> SVector<f64, POSITION_STATES> {
-        by_axis(core::array::from_fn(|derivative| {
-            self.vector(&Vector2::new(state[derivative], state[AXIS_STATES + derivative]))
-        }))
+        by_axis(core::array::from_fn(|of| self.vector(&derivative(state, of))))
     }
 }

@@ -77,12 +77,9 @@ impl Thrown {
         jump_m_s3: &Vector2<f64>,
     ) -> (TurnUnderWay, Vector2<f64>) {
         let turning_rad_s2 = seen.disturbance_rad_s2;
-        let Turning { turning_rad_s2: before_rad_s2, mut answered_rad_s2, .. } =
-            self.latest.unwrap_or(Turning {
-                turning_rad_s2,
-                answered_rad_s2: turning_rad_s2,
-                turning_m_s4: Vector2::zeros(),
-                seen_m_s4: Vector2::zeros(),
+        let (before_rad_s2, mut answered_rad_s2) =
+            self.latest.map_or((turning_rad_s2, turning_rad_s2), |latest| {
+                (latest.turning_rad_s2, latest.answered_rad_s2)
             });
         let change_rad_s2 = answer(&mut answered_rad_s2, &turning_rad_s2, &seen.unsure_rad_s2);
         let turning_m_s4 = seen.disturbance_m_s4();

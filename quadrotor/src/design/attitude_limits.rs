@@ -58,18 +58,24 @@ impl RotorRoom<'_> {
         planned_rad_s2: &Vector2<f64>,
         answer_rad_s2: &Vector2<f64>,
     ) -> Vector2<f64> {
+        // Mostly there is nothing to answer.
+        if *answer_rad_s2 == Vector2::zeros() {
+            return *answer_rad_s2;
+        }
         let (down_n, up_n) = self.mixer.tilting_room_n(self.thrust_n);
-        let thrusts_n = |lean_rad_s2: &Vector2<f64>, other_n_m: &Vector2<f64>| {
-            self.mixer.tilting_thrusts_n(&(lean_rad_s2.component_mul(&self.inertia_kg_m2.xy()) + other_n_m))
-        };
-        let taken_n = thrusts_n(planned_rad_s2, &self.other_n_m.xy());
-        let more_n = thrusts_n(answer_rad_s2, &Vector2::zeros());
+        let taken_n = self.mixer.tilting_thrusts_n(&self.tilting_n_m(planned_rad_s2));
+        let more_n = self.mixer.tilting_thrusts_n(&answer_rad_s2.component_mul(&self.inertia_kg_m2.xy()));
         let shares = taken_n.iter().zip(&more_n).map(|(taken, more)| {
             let room = if *more > 0.0 { up_n - taken } else { down_n + taken };
             let size = libm::fabs(*more);
             if size <= room { 1.0 } else { room.max(0.0) / size }
         });
         answer_rad_s2 * shares.fold(1.0, f64::min)
+    }
+
+    /// Torque about roll and pitch for commanded angular accelerations, rad/s², with what is needed beside them, N·m.
+    fn tilting_n_m(&self, lean_rad_s2: &Vector2<f64>) -> Vector2<f64> {
+        lean_rad_s2.component_mul(&self.inertia_kg_m2.xy()) + self.other_n_m.xy()
     }
 
     /// Values of [`lean_limits`]. Thrust gives way to roll and pitch.
@@ -91,8 +97,7 @@ impl RotorRoom<'_> {
         lean_rad_s2: &Vector2<f64>,
         reference_rad_s2: f64,
     ) -> [f64; TURN_BOUNDS] {
-        let tilting = lean_rad_s2.component_mul(&self.inertia_kg_m2.xy()) + self.other_n_m.xy();
-        let present = self.mixer.turning_range_n_m(self.thrust_n, &tilting);
+        let present = self.mixer.turning_range_n_m(self.thrust_n, &self.tilting_n_m(lean_rad_s2));
         let alone = self.mixer.turning_range_alone_n_m(self.thrust_n);
         let acceleration = |torque_n_m: f64| (torque_n_m - self.other_n_m.z) / self.inertia_kg_m2.z;
         let later = (acceleration(alone.0) + reference_rad_s2, acceleration(alone.1) + reference_rad_s2);

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use quadrotor::{Airframe, AirframePreset, BatteryPack, Configuration, ControllerKind, Inputs, Simulation};
 
-use crate::common::{distance, fly, goal};
+use crate::common::{distance, farthest_m, fly, goal};
 
 /// What makes an option of an airframe without.
 type Change = fn(&mut Airframe);
@@ -118,10 +118,7 @@ fn a_balanced_hover_begins_at_rest() {
                 configuration.sensors.output_feedback = output_feedback;
                 let airframe = &mut configuration.airframe;
                 airframe.centre_of_gravity_m = [0.02, -0.014, 0.0].map(|part| part * airframe.arm_length_m);
-                let mut farthest_m = 0.0_f64;
-                fly(&configuration, &goal([0.0; 3], 0.0), 4.0, |outputs| {
-                    farthest_m = farthest_m.max(outputs.position_m.norm());
-                });
+                let farthest_m = farthest_m(&configuration, &goal([0.0; 3], 0.0), 4.0);
                 assert!(farthest_m < 1e-9, "{preset:?} {kind:?} {output_feedback}: {farthest_m} m");
             }
         }

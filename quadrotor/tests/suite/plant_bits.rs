@@ -1,33 +1,12 @@
 //! The plant's doubles, bit for bit: a flight that was recorded flies again.
 
+use crate::common::numbers::Numbers;
 use crate::common::physics::all_physics;
-use nalgebra::{Quaternion, Vector3};
+use nalgebra::Quaternion;
 use quadrotor::{
     Airframe, Disturbance, Environment, InitialState, Plant, PlantInputs, PlantState, RigidBody, RotorFault,
     Wrench,
 };
-
-/// SplitMix64: the same numbers on every machine.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Within ±most.
-    fn within(&mut self, most: f64) -> f64 {
-        most * (2.0 * (self.next() >> 11) as f64 / (1_u64 << 53) as f64 - 1.0)
-    }
-
-    fn vector(&mut self, most: f64) -> Vector3<f64> {
-        Vector3::from_fn(|_, _| self.within(most))
-    }
-}
 
 /// FNV-1a over the bits of what is seen.
 struct Digest(u64);

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 use quadrotor::{AirframePreset, Configuration, ControllerKind, Outputs};
 
-use crate::common::{fly, goal, tilt_rad};
+use crate::common::{farthest_m, fly, goal, tilt_rad};
 
 /// Starts `height_m` up in an attitude, with body rates, and asks to hold that place.
 fn from_attitude(
@@ -64,11 +64,7 @@ fn a_lean_that_nobody_has_commanded_is_taken_back_at_once() {
                 configuration.reference.shaping = false;
                 configuration.initial.attitude_rad = [roll_rad, 0.0, 0.0];
                 configuration.initial.body_rate_rad_s = [rate_rad_s, 0.0, 0.0];
-                let mut farthest_m = 0.0_f64;
-                fly(&configuration, &goal([0.0; 3], 0.0), 6.0, |outputs| {
-                    farthest_m = farthest_m.max(outputs.position_m.norm());
-                });
-                farthest_m
+                farthest_m(&configuration, &goal([0.0; 3], 0.0), 6.0)
             });
             let told =
                 format!("{preset:?}, {roll_rad} rad, {rate_rad_s} rad/s: {flown_m} and {regulated_m} m");

@@ -421,6 +421,11 @@ pub struct Arguments {
 }
 
 impl Arguments {
+    /// Whether each vehicle sees the others in its traffic.
+    pub fn sees_fleet(&self) -> bool {
+        self.traffic.iter().flatten().any(|choice| *choice == TrafficChoice::Fleet)
+    }
+
     /// These settings; what they leave open is taken from a file's.
     pub fn or(self, file: Self) -> Self {
         Self {

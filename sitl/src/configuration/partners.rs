@@ -1,7 +1,6 @@
 //! Flags that mean nothing without another.
 
 use super::Arguments;
-use super::traffic::TrafficChoice;
 use crate::failure::Failure;
 
 /// Refuses what would be ignored in a run of so many vehicles.
@@ -11,7 +10,6 @@ use crate::failure::Failure;
 pub fn check(arguments: &Arguments, vehicles: usize) -> Result<(), Failure> {
     let waits = arguments.lockstep.is_some();
     let (logs, tlog) = (arguments.log_dir.is_some(), arguments.tlog.is_some());
-    let sees_fleet = arguments.traffic.iter().flatten().any(|choice| *choice == TrafficChoice::Fleet);
     let lone = [
         ("--lockstep-period", arguments.lockstep_period.is_some(), "--lockstep", waits),
         ("--lockstep-timeout", arguments.lockstep_timeout.is_some(), "--lockstep", waits),
@@ -21,7 +19,7 @@ pub fn check(arguments: &Arguments, vehicles: usize) -> Result<(), Failure> {
         ("--log-size", arguments.log_size.is_some(), "--log-dir or --tlog", logs || tlog),
         ("--log-count", arguments.log_count.is_some(), "--log-dir or --tlog", logs || tlog),
         ("--hil-mount", arguments.hil_mount.is_some(), "--hil", arguments.hil.is_some()),
-        ("--traffic fleet", sees_fleet, "--vehicles 2 or more", vehicles > 1),
+        ("--traffic fleet", arguments.sees_fleet(), "--vehicles 2 or more", vehicles > 1),
     ]
     .into_iter()
     .find(|(_, given, _, has_partner)| *given && !has_partner);

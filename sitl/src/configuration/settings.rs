@@ -17,8 +17,8 @@ use vehicle::{BatteryPack, Conduct, Notice, Severity, TICK_US, VehicleSettings};
 
 use super::start_parameters::set_parameters;
 use super::{
-    AirframeChoice, Arguments, Clocks, Ports, TrafficChoice, ViewAddress, fmu, partners, read_plans,
-    read_world, wind_drag, wind_hold,
+    AirframeChoice, Arguments, Clocks, Ports, ViewAddress, fmu, partners, read_plans, read_world, wind_drag,
+    wind_hold,
 };
 use crate::failure::Failure;
 use crate::files::kept_plans;
@@ -131,7 +131,7 @@ impl Settings {
             record_most_bytes: (arguments.record_size.unwrap_or(RECORD_MEGABYTES) * 1e6) as u64,
             tlog: arguments.tlog.clone(),
             logs: log_settings(arguments),
-            fleet_traffic: arguments.traffic.iter().flatten().any(|choice| *choice == TrafficChoice::Fleet),
+            fleet_traffic: arguments.sees_fleet(),
             ftp_root: arguments.ftp_root.clone().map(|path| (path, arguments.ftp_write.unwrap_or(false))),
             signing_key: arguments.signing_key.clone(),
             fmu,

@@ -13,6 +13,18 @@ fn count(bench: &Bench, text: &str) -> usize {
     bench.texts().iter().filter(|told| *told == text).count()
 }
 
+/// A mission of a single item, 15 m above where the vehicle starts.
+fn give_mission(start: &mut VehicleSettings, command: u16) {
+    let item = MissionItem {
+        frame: frame::GLOBAL_RELATIVE_INT,
+        command,
+        parameters: [0.0; 4],
+        position: [start.origin.latitude_deg, start.origin.longitude_deg, 15.0],
+        autocontinue: true,
+    };
+    start.plans.set(PlanKind::Mission, Plan::new(vec![item]));
+}
+
 /// A cause that comes and goes several times per second acts once, and is over once.
 #[test]
 fn what_flickers_acts_once() {
@@ -85,14 +97,7 @@ fn a_worse_cause_goes_before_a_milder_one() {
 fn no_mission_is_begun_without_a_position_or_a_rotor() {
     for cause in [Cause::PositionLost, Cause::RotorFailure] {
         let mut start = settings(Identity::Px4);
-        let waypoint = MissionItem {
-            frame: frame::GLOBAL_RELATIVE_INT,
-            command: command::NAV_WAYPOINT,
-            parameters: [0.0; 4],
-            position: [start.origin.latitude_deg, start.origin.longitude_deg, 15.0],
-            autocontinue: true,
-        };
-        start.plans.set(PlanKind::Mission, Plan::new(vec![waypoint]));
+        give_mission(&mut start, command::NAV_WAYPOINT);
         let mut bench = Bench::hovering_with(&start);
         spoil(&mut bench, cause);
         bench.fly(0.2);
@@ -297,15 +302,14 @@ fn without_a_position_it_comes_down_level_and_softly() {
     assert!(bench.position()[2].abs() < 0.05);
 }
 
-/// A vehicle without a receiver, armed by force.
-fn armed_without_a_position(mut start: VehicleSettings) -> Bench {
+/// A vehicle without a receiver, armed by force, in a mode unless it starts in the one.
+fn armed_without_a_position(mut start: VehicleSettings, mode: Option<Mode>) -> Bench {
     start.sensors.model = SensorModel::Realistic;
     start.faults = vec!["0:gps=off".parse().expect("a fault")];
     let mut bench = Bench::of(&start);
     bench.fly(3.0);
-    if start.identity.is_ardupilot() {
-        // A mode that needs no place can be armed in.
-        assert_eq!(bench.set_mode(Mode::Offboard), 0);
+    if let Some(mode) = mode {
+        assert_eq!(bench.set_mode(mode), 0);
     }
     let by_force = [1.0, 21196.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     assert_eq!(bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, by_force), 0, "{:?}", bench.texts());
@@ -316,7 +320,9 @@ fn armed_without_a_position(mut start: VehicleSettings) -> Bench {
 #[test]
 fn no_takeoff_is_begun_without_a_position() {
     for identity in [Identity::Px4, Identity::ArduPilot] {
-        let mut bench = armed_without_a_position(settings(identity));
+        // Of ArduPilot, a mode that needs no place can be armed in.
+        let mode = identity.is_ardupilot().then_some(Mode::Offboard);
+        let mut bench = armed_without_a_position(settings(identity), mode);
         let height = if identity.is_ardupilot() { 10.0 } else { f32::NAN };
         let parameters = [0.0, 0.0, 0.0, f32::NAN, f32::NAN, f32::NAN, height];
         assert_ne!(bench.command(MavCmd::MAV_CMD_NAV_TAKEOFF, parameters), 0, "{identity:?}");
@@ -335,22 +341,9 @@ fn no_takeoff_is_begun_without_a_position() {
 #[test]
 fn a_mission_that_takes_off_without_a_position_lands() {
     let mut start = settings(Identity::Px4);
-    let takeoff = MissionItem {
-        frame: frame::GLOBAL_RELATIVE_INT,
-        command: command::NAV_TAKEOFF,
-        parameters: [0.0; 4],
-        position: [start.origin.latitude_deg, start.origin.longitude_deg, 15.0],
-        autocontinue: true,
-    };
-    start.plans.set(PlanKind::Mission, Plan::new(vec![takeoff]));
+    give_mission(&mut start, command::NAV_TAKEOFF);
     start.autostart = false;
-    start.sensors.model = SensorModel::Realistic;
-    start.faults = vec!["0:gps=off".parse().expect("a fault")];
-    let mut bench = Bench::of(&start);
-    bench.fly(3.0);
-    assert_eq!(bench.set_mode(Mode::Mission), 0);
-    let by_force = [1.0, 21196.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    assert_eq!(bench.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, by_force), 0, "{:?}", bench.texts());
+    let mut bench = armed_without_a_position(start, Some(Mode::Mission));
     bench.fly(30.0);
     assert!(!bench.autopilot.vehicle().is_armed(), "{:?}", bench.texts());
     assert!(

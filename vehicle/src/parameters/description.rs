@@ -259,6 +259,7 @@ mod tests {
         let range = table.find("RTL_ALT").expect("there").describe().range;
         assert_eq!((range.unit, range.minimum, range.maximum), ("cm", 100.0, 100_000.0));
     }
+
     /// Its bounds are 0.05 and 1.2 rad, in degrees 2.8648 and 68.7549: what is named is allowed.
     #[test]
     fn a_bound_in_another_unit_has_few_digits_and_is_allowed() {

@@ -102,6 +102,7 @@ mod tests {
         assert!(!autostart.is_pending());
         assert_eq!(Autostart::new(false).step(PERIOD_US, false, true), Step::None);
     }
+
     #[test]
     fn what_is_in_the_way_is_told_when_it_changes_and_again_after_a_while() {
         let mut autostart = Autostart::new(true);

@@ -169,14 +169,14 @@ impl TrafficWatch {
     }
 
     fn act(&mut self, situation: &Situation, proposal: &mut Proposal, encounter: &Encounter) {
-        let place_m = &situation.outputs.position_m;
-        let [horizontal_m, vertical_m] = separation_m(&encounter.aircraft, place_m, situation.time_us);
-        let is_above = encounter.aircraft.position_at_m(situation.time_us).z < place_m.z;
-        let side = if is_above { "above" } else { "below" };
         let action = encounter.action;
         if action == Action::None {
             return;
         }
+        let place_m = &situation.outputs.position_m;
+        let [horizontal_m, vertical_m] = separation_m(&encounter.aircraft, place_m, situation.time_us);
+        let is_above = encounter.aircraft.position_at_m(situation.time_us).z < place_m.z;
+        let side = if is_above { "above" } else { "below" };
         let enters = action.mode().filter(|_| situation.flies() && action > Action::of_mode(situation.mode));
         let doing = if enters.is_some() { action.doing() } else { Action::Warn.doing() };
         let name = encounter.aircraft.name();

@@ -1,6 +1,7 @@
 //! Flights that several tests share.
 
 pub mod dormand_prince;
+pub mod numbers;
 pub mod physics;
 pub mod trajectory;
 
@@ -79,6 +80,13 @@ pub fn fly(
         see(&simulation.outputs());
     }
     simulation
+}
+
+/// How far from the origin a flight of `duration_s` gets, m.
+pub fn farthest_m(configuration: &Configuration, inputs: &impl InputSignal, duration_s: f64) -> f64 {
+    let mut farthest_m = 0.0_f64;
+    fly(configuration, inputs, duration_s, |outputs| farthest_m = farthest_m.max(outputs.position_m.norm()));
+    farthest_m
 }
 
 /// Angle between the thrust axis and the vertical, rad.
