@@ -16,6 +16,7 @@ use crate::control::instants::{Clocks, Due, LATEST_US, Phases};
 use crate::control::learning::mass_and_drag::MassAndDrag;
 use crate::control::measurement::Instruments;
 use crate::control::observation::Observation;
+use crate::control::rate_bias::RateBias;
 use crate::control::rotor_command::RotorCommand;
 use crate::design::loop_design::LoopDesign;
 use crate::guidance::reference_guidance::Guidance;
@@ -41,6 +42,7 @@ pub struct ControlState {
     /// Limits of the commands.
     limits: CommandLimits,
     clearance: Clearance,
+    bias: RateBias,
     estimator: Estimator,
     learned: MassAndDrag,
     cascade: Cascade,
@@ -87,6 +89,7 @@ impl ControlState {
             guidance,
             limits: CommandLimits::new(&configuration.limits),
             clearance: Clearance::take_off(configuration, &first),
+            bias: RateBias::default(),
             estimator,
             learned: MassAndDrag::new(configuration),
             cascade,
@@ -106,7 +109,10 @@ impl ControlState {
                 reason: "its controllers do not sample when they would",
             });
         }
-        if !(self.learned.is_possible(configuration) && self.clearance.is_possible()) {
+        if !(self.learned.is_possible(configuration)
+            && self.clearance.is_possible()
+            && self.bias.is_possible())
+        {
             return Err(ConfigurationError::State { reason: "what it has learned is out of range" });
         }
         Ok(())
@@ -198,6 +204,7 @@ impl ControlState {
     pub(crate) fn shift_positions(&mut self, by_m: &Vector3<f64>) {
         self.guidance.shift(by_m);
         self.cascade.shift(by_m);
+        self.bias.shift(by_m);
         self.estimator.shift(by_m);
         self.learned.shift(by_m);
         self.clearance.shift(by_m.z);
@@ -336,6 +343,12 @@ impl ControlState {
         measurement: &Measurement,
         (due, time_us): (Due, u64),
     ) -> Result<(), ControlError> {
+        // Where rates are read at all.
+        let sensors = &design.configuration.sensors;
+        if due.attitude && !sensors.output_feedback {
+            self.bias.observe(sensors, &measurement.motion, time_us);
+        }
+        let measurement = &self.bias.corrected(measurement);
         let z_m = measurement.motion.position_m.z;
         let is_clear = due.attitude && self.clearance.observe(&design.configuration, inputs.ground_z_m, z_m);
         let configuration = &if due.attitude {

@@ -30,6 +30,7 @@ pub(crate) mod narrowed_way;
 pub(crate) mod observation;
 pub(crate) mod observed_motion;
 pub(crate) mod position_controller;
+pub(crate) mod rate_bias;
 pub(crate) mod required_thrust;
 pub(crate) mod rotor_command;
 pub(crate) mod rotor_loss;

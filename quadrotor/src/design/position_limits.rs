@@ -55,7 +55,10 @@ const CATCHING_UP: f64 = 0.01;
 const LEAST_CATCHING_UP_M_S: f64 = 0.05;
 /// The same of a reference that is faster than the limit, which is another's plan.
 const CATCHING_UP_WITH_FASTER: f64 = 0.1;
-/// How much more jerk than a reference that limits bend the feedback may use, as a share of the limit. Such a reference turns at the limit
+/// The same of a way that limits bend: the vehicle is behind it, or is led back by it to a reference that it has lost. A plan that had to keep
+/// to its speed would give way at all limits, and swing about the way for ever.
+const CATCHING_UP_WITH_BENT: f64 = 0.2;
+/// How much more jerk than a reference that limits bend the feedback may use, as a share of the limit. Such a reference turns near the limit
 /// all the way round: a plan of a few functions of time, kept to it at each sample, would never come back to its way.
 const TURNING_BACK: f64 = 0.5;
 /// What rounding makes of a reference at the speed limit.
@@ -165,9 +168,19 @@ pub(crate) fn position_bounds(
         [limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2].map(|limit| share * GRAVITY_M_S2 * limit);
     let turning = with_faster(most_m_s4, asked.snap_m_s4, CATCHING_UP_WITH_FASTER).max(under_way.snap_m_s4)
         + ANSWER_1_S * under_way.jump_m_s3;
-    let share = if asked.is_held { TURNING_BACK } else { CATCHING_UP_WITH_FASTER };
-    let leaning = with_faster(most_m_s3, asked.jerk_m_s3, share).max(under_way.jerk_m_s3);
-    let speed = most_speed_m_s(limits.speed_horizontal_m_s, asked.speed_m_s);
+    let is_bent = asked.is_held || asked.is_narrow;
+    let leaning = if is_bent {
+        most_m_s3.max(asked.jerk_m_s3 + TURNING_BACK * most_m_s3)
+    } else {
+        with_faster(most_m_s3, asked.jerk_m_s3, CATCHING_UP_WITH_FASTER)
+    };
+    let leaning = leaning.max(under_way.jerk_m_s3);
+    let limit_m_s = limits.speed_horizontal_m_s;
+    let speed = if is_bent {
+        faster_m_s(limit_m_s, asked.speed_m_s, CATCHING_UP_WITH_BENT)
+    } else {
+        most_speed_m_s(limit_m_s, asked.speed_m_s)
+    };
     core::array::from_fn(|bound| match bound {
         ..SIDES => present_m_s2,
         _ if bound < 2 * SIDES => lasting_m_s2,
@@ -216,7 +229,12 @@ pub(crate) fn planned_horizon_m(
 
 /// The largest speed, m/s, while a reference asks for speeds up to `asked_m_s`: the limit, and what it takes to catch up with it.
 pub(crate) fn most_speed_m_s(limit_m_s: f64, asked_m_s: f64) -> f64 {
-    limit_m_s.max(asked_m_s + catching_up_m_s(limit_m_s, asked_m_s))
+    faster_m_s(limit_m_s, asked_m_s, catching_up_share(limit_m_s, asked_m_s))
+}
+
+/// The same with a share of the limit to catch up by.
+fn faster_m_s(limit_m_s: f64, asked_m_s: f64, share: f64) -> f64 {
+    limit_m_s.max(asked_m_s + catching_up_m_s(limit_m_s, share))
 }
 
 /// A limit, or by a share of it more than a reference that asks for more than it.
@@ -224,8 +242,11 @@ fn with_faster(limit: f64, asked: f64, share: f64) -> f64 {
     if asked > ROUNDING * limit { asked + share * limit } else { limit }
 }
 
-fn catching_up_m_s(limit_m_s: f64, asked_m_s: f64) -> f64 {
-    let share = if asked_m_s > ROUNDING * limit_m_s { CATCHING_UP_WITH_FASTER } else { CATCHING_UP };
+fn catching_up_share(limit_m_s: f64, asked_m_s: f64) -> f64 {
+    if asked_m_s > ROUNDING * limit_m_s { CATCHING_UP_WITH_FASTER } else { CATCHING_UP }
+}
+
+fn catching_up_m_s(limit_m_s: f64, share: f64) -> f64 {
     (share * limit_m_s).max(LEAST_CATCHING_UP_M_S)
 }
 
@@ -235,7 +256,8 @@ fn catching_up_m_s(limit_m_s: f64, asked_m_s: f64) -> f64 {
 /// A plan ends on its reference. One that may not go faster than a reference at the speed limit would put off catching up until after
 /// the samples on which it is limited, and fall behind before.
 pub(crate) fn closing_share(limit_m_s: f64, ahead_m_s: f64) -> f64 {
-    let least = (catching_up_m_s(limit_m_s, ahead_m_s) / limit_m_s).min(1.0);
+    let share = catching_up_share(limit_m_s, ahead_m_s);
+    let least = (catching_up_m_s(limit_m_s, share) / limit_m_s).min(1.0);
     (1.0 - ahead_m_s / limit_m_s).clamp(least, 1.0)
 }
 
@@ -330,7 +352,8 @@ mod tests {
             (false, 0.9, 1.0, 1.0),
             (false, 1.0, 1.0, 1.0),
             (false, 1.5, 1.6, 1.6),
-            (true, 0.9, 1.0, 1.0),
+            (true, 0.4, 1.0, 1.0),
+            (true, 0.9, 1.0, 1.4),
             (true, 1.5, 1.6, 2.0),
         ] {
             let (jerk_m_s3, snap_m_s4) = (share * leaning, share * turning);
@@ -363,6 +386,16 @@ mod tests {
         // At the limit by one per cent of it.
         assert!((speed(8.0) - 0.995 * 8.08).abs() < 1e-12);
         assert!((speed(10.0) - 0.995 * 10.8).abs() < 1e-12);
+        let of_bent = |asked: Asked| {
+            position_bounds(&Limits::default(), (5.0, 5.0), &asked, TurnUnderWay::default())
+                [POSITION_BOUNDS - 1]
+        };
+        for (speed_m_s, most_m_s) in [(6.0, 8.0), (7.5, 9.1), (10.0, 11.6)] {
+            for is_narrow in [false, true] {
+                let bent = Asked { speed_m_s, is_narrow, is_held: !is_narrow, ..Asked::default() };
+                assert!((of_bent(bent) - 0.995 * most_m_s).abs() < 1e-12);
+            }
+        }
     }
 
     #[test]

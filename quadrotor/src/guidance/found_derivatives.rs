@@ -12,6 +12,9 @@ use crate::{GRAVITY_M_S2, Limits, PositionReference};
 const MOTION: f64 = 1.5;
 /// So many samples tell the derivatives of a motion well.
 const SETTLED: usize = 9;
+/// Derivatives that are told so well may be so many times as large: those of a motion far beyond the limits are such, and one of which part is
+/// left out is none. What cannot be followed of it is told from the whole.
+const FAR_BEYOND: f64 = 4.0;
 /// Multiple of the limits of jerk beyond which a change of the acceleration counts as a jump, not as motion.
 const JERK_JUMP: f64 = 10.0;
 /// The same of the limits of speed for a change of the position.
@@ -119,9 +122,10 @@ impl FoundDerivatives {
             return *point;
         }
         // What the tilt command may do, and what is motion beyond it.
-        let most_m_s2 = GRAVITY_M_S2 * libm::tan(limits.tilt_rad);
-        let most_m_s3 = MOTION * GRAVITY_M_S2 * limits.tilt_rate_rad_s;
-        let most_m_s4 = MOTION * GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2;
+        let most = if self.are_settled(point) { FAR_BEYOND } else { 1.0 } * GRAVITY_M_S2;
+        let most_m_s2 = most * libm::tan(limits.tilt_rad);
+        let most_m_s3 = most * MOTION * limits.tilt_rate_rad_s;
+        let most_m_s4 = most * MOTION * limits.tilt_acceleration_rad_s2;
         let mut whole = *point;
         let found = self.accelerations.at(since_us);
         whole.jerk_m_s3 = at_most(&found.first, most_m_s3);

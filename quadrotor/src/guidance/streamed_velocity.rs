@@ -3,11 +3,13 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::Limits;
 use crate::guidance::derivative_estimator::{DerivativeEstimator, Derivatives, Sample};
+use crate::{GRAVITY_M_S2, Limits};
 
 /// Multiple of the limits of acceleration beyond which a change of the velocity is a jump, not motion.
 const JUMP: f64 = 3.0;
+/// What is slower, m/s², may be the motion of somebody who does not know the limits.
+const FASTEST_M_S2: f64 = 4.0 * GRAVITY_M_S2;
 
 /// Finds acceleration and jerk of a trajectory from its velocities, which somebody sets every so often. A velocity that is constant or
 /// jumps has none.
@@ -23,7 +25,7 @@ impl StreamedVelocity {
     /// The same, and what is found.
     pub(crate) fn look(&mut self, velocity_m_s: &Vector3<f64>, limits: &Limits, time_us: u64) -> Sample {
         let strongest = limits.acceleration_horizontal_m_s2.max(limits.acceleration_vertical_m_s2);
-        self.0.observe(velocity_m_s, JUMP * strongest, time_us)
+        self.0.observe(velocity_m_s, FASTEST_M_S2.max(JUMP * strongest), time_us)
     }
 
     /// Acceleration, m/s², and jerk, m/s³, at `time_us`.
