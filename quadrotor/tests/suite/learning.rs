@@ -209,6 +209,57 @@ fn hovering_under(configuration: &Configuration, unknown: &Unknown) -> (f64, f64
     (worst_m, last_m, control)
 }
 
+/// How far a vehicle is off a way at the last of its 60 s, RMS of 20 s, m, whose mass changes at 15 s.
+fn loaded_on_a_way_m(kind: ControllerKind, way: &Trajectory, mass_kg: f64) -> f64 {
+    let mut configuration = unshaped(kind, false);
+    way.begin(&mut configuration);
+    let plant = |mass_kg: f64| {
+        let airframe = Airframe { mass_kg, ..configuration.airframe };
+        Plant::new(&airframe, &configuration.environment)
+    };
+    let (empty, loaded) = (plant(configuration.airframe.mass_kg), plant(mass_kg));
+    let inputs = |time_us: u64| ControlInputs::armed(Target::Reference(way.reference(time_us, true)));
+    let mut state = PlantState::at_rest(&configuration.initial);
+    state.rotor_speed_rad_s = [configuration.airframe.hover_rotor_speed_rad_s(); 4];
+    let measured =
+        |state: &PlantState| Measurement { motion: state.body, rotor_speed_rad_s: state.rotor_speed_rad_s };
+    let mut control = ControlLoop::new(&configuration, &inputs(0), &mut measured(&state), 0).unwrap();
+    let (mut square, mut count) = (0.0, 0.0);
+    for time_us in (0..60_000_000_u64).step_by(1_000) {
+        let command_rad_s = control.advance_to(time_us, &inputs, &mut measured(&state)).unwrap();
+        let plant = if time_us < 15_000_000 { &empty } else { &loaded };
+        state = plant.step(&state, &PlantInputs::rotor_speeds(command_rad_s), 1e-3);
+        if time_us >= 40_000_000 {
+            let wanted_m = way.reference(time_us + 1_000, true).position_m;
+            square += (state.body.position_m - wanted_m).norm_squared();
+            count += 1.0;
+        }
+    }
+    f64::sqrt(square / count)
+}
+
+/// In level flight a mass shows only where the thrust turns, and that for seconds. What a change of the mass left unexplained was another
+/// surprise each time, with which they began anew: the vehicle stayed 5 to 25 cm beside its figure-eight.
+#[test]
+fn a_load_is_found_in_level_flight() {
+    let level = |size_m: f64, rate_rad_s: f64| Trajectory {
+        amplitude_m: [size_m, size_m / 2.0, 0.0],
+        ..Trajectory::figure_eight(rate_rad_s)
+    };
+    for kind in KINDS {
+        for (way, mass_kg) in [
+            (level(4.0, 0.6), 0.91),
+            (level(2.0, 1.0), 0.91),
+            (level(2.0, 1.0), 1.12),
+            (level(5.0, 0.4), 0.91),
+            (level(4.0, 0.6), 0.56),
+        ] {
+            let off_m = loaded_on_a_way_m(kind, &way, mass_kg);
+            assert!(off_m < 0.01, "{kind:?} {mass_kg} kg on {:?}: {off_m} m", way.amplitude_m);
+        }
+    }
+}
+
 /// A load of 30 % of the mass is dropped or picked up in hover: the height is back within seconds. The thrust has changed within a tenth of
 /// a second and hardly moves after that, so that the load may still pass for a force; it is never taken for more than it is.
 #[test]

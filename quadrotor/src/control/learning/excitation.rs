@@ -69,7 +69,7 @@ impl Excitation {
 
     /// By how much the velocity in the equation of an interval differs from the steady one, NED, m/s.
     pub(crate) fn change_of_speed_m_s(&self, terms: &Terms) -> Vector3<f64> {
-        self.steady.map_or(Vector3::zeros(), |steady| speed_m_s(terms) - steady.motion.speed_m_s)
+        self.steady.map_or(Vector3::zeros(), |steady| terms.speed_m_s() - steady.motion.speed_m_s)
     }
 
     /// What the equation of an interval shows under noise of this deviation, m/s², if the vehicle has this drag per mass, 1/s.
@@ -107,20 +107,13 @@ impl Excitation {
     }
 }
 
-/// Along the world axes, m/s, of a filter as far as it is filled.
-fn speed_m_s(terms: &Terms) -> Vector3<f64> {
-    let scale = 1.0 / terms.filled.max(f64::EPSILON);
-    // R Rᵀ diag(v)
-    (terms.in_body.transpose() * terms.velocity_m_s).diagonal() * (scale * scale)
-}
-
 impl Moving {
     /// Of a filter as far as it is filled.
     fn of(terms: &Terms, drag_1_s: &Vector3<f64>) -> Self {
         let scale = 1.0 / terms.filled.max(f64::EPSILON);
         let along = terms.in_body * terms.acceleration_m_s2 * (scale * scale);
         let thrust = terms.in_body.transpose() * Vector3::new(0.0, 0.0, -terms.thrust_m_s2) * (scale * scale);
-        let speed_m_s = speed_m_s(terms);
+        let speed_m_s = terms.speed_m_s();
         Self {
             thrust_m_s2: terms.thrust_m_s2 * scale,
             acceleration_m_s2: along.z,

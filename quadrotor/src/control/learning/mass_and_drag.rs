@@ -38,6 +38,10 @@ const DRAG_DEVIATIONS: f64 = 2.0;
 pub(super) const GUSTY_S: f64 = 10.0;
 /// Surprises of late, each of which counts less by e within [`GUSTY_S`], beyond which the next one is a gust.
 const MOST_SURPRISES: f64 = 1.5;
+/// So many of them are left of one surprise within seven seconds.
+const LATELY: f64 = 0.5;
+/// Climbs and descents that are slower than this, m/s, are level flight.
+const LEVEL_M_S: f64 = 0.5;
 /// A surprise may be a gust while the thrust per mass mostly keeps within this share of it.
 const STEADY_SHARE: f64 = 0.4;
 /// How many times more a gust may change the force along the thrust than it shows at once across it.
@@ -103,6 +107,8 @@ pub(crate) struct MassAndDrag {
     latest_us: Option<u64>,
     /// Force per mass beside thrust and drag, averaged over seconds, NED, m/s².
     steady_force_m_s2: Vector3<f64>,
+    /// What the estimate has not explained along the thrust in these seconds, m/s²: it is known, and no other surprise.
+    steady_missed_m_s2: f64,
     /// Thrust per mass of these seconds.
     thrust: SteadyThrust,
     /// Of the force along the thrust on the thrust of these seconds.
@@ -126,6 +132,7 @@ impl MassAndDrag {
             estimate: BoundedEstimate::new(&prior(configuration), &believed(configuration)),
             latest_us: None,
             steady_force_m_s2: Vector3::zeros(),
+            steady_missed_m_s2: 0.0,
             thrust: SteadyThrust::new(),
             fit: ThrustFit::new(),
             settling_s: SETTLING_S,
@@ -301,7 +308,8 @@ impl MassAndDrag {
             + SURPRISE_DEVIATIONS * noise_m_s2
             + self.swing_along_m_s2(self.fit.deviation_m_s2(), noise_m_s2);
         self.surprises *= kept;
-        let along_m_s2 = libm::fabs(change_m_s2.z);
+        let known_m_s2 = self.known_m_s2(terms);
+        let along_m_s2 = libm::fabs(change_m_s2.z - known_m_s2);
         let is_surprised = self.settling_s == 0.0 && along_m_s2 > surprise_m_s2;
         if is_surprised && self.surprises <= MOST_SURPRISES {
             let surprise = Surprise {
@@ -341,7 +349,15 @@ impl MassAndDrag {
         let slow = averaging.steady_force;
         let share = if self.settling_s > 0.0 { 1.0 } else { slow };
         self.steady_force_m_s2 += (self.force_m_s2() - self.steady_force_m_s2) * share;
+        self.steady_missed_m_s2 += (unexplained_m_s2.z / terms.filled - self.steady_missed_m_s2) * share;
         self.thrust.see(terms.present_thrust_m_s2(), slow);
+    }
+
+    /// What of the force along the thrust is missed and no other surprise, m/s²: after one, level flight shows a mass only where the thrust
+    /// turns, which takes seconds. Each surprise would begin them anew.
+    fn known_m_s2(&self, terms: &Terms) -> f64 {
+        let is_level = libm::fabs(terms.speed_m_s().z) < LEVEL_M_S;
+        if self.surprises > LATELY && is_level { self.steady_missed_m_s2 * terms.filled } else { 0.0 }
     }
 
     /// Goes back to what was known before a surprise that has ended: it was a gust, and no mass.
@@ -354,7 +370,7 @@ impl MassAndDrag {
         let is_old = now_us.saturating_sub(before.since_us()) as f64 > 1e6 * GUSTY_S;
         let Some(known) = self.before.take_if(|_| has_ended || is_old).filter(|_| !is_old) else { return };
         self.estimate = *known.estimate();
-        self.steady_force_m_s2 = self.force_m_s2();
+        (self.steady_force_m_s2, self.steady_missed_m_s2) = (self.force_m_s2(), 0.0);
         let swing_m_s2 = known.most_missed_m_s2() / GUST_SWINGS;
         self.gusts_m_s2 = self.gusts_m_s2.max(swing_m_s2).min(MOST_FORCE_M_S2);
     }

@@ -120,6 +120,13 @@ impl Terms {
         self.thrust_m_s2 / self.filled
     }
 
+    /// Velocity along the world axes, m/s, however far the filter is filled.
+    pub(crate) fn speed_m_s(&self) -> Vector3<f64> {
+        let scale = 1.0 / self.filled.max(f64::EPSILON);
+        // R Rᵀ diag(v)
+        (self.in_body.transpose() * self.velocity_m_s).diagonal() * (scale * scale)
+    }
+
     /// Whether all of them are finite, and some of the filter is filled.
     pub(crate) fn is_finite(&self) -> bool {
         self.filled > 0.0
