@@ -8,6 +8,7 @@ use crate::attitude::turned;
 use crate::control::clearance::carries;
 use crate::control::euler_equation::angular_acceleration_rad_s2;
 use crate::control::mass_belief::MassBelief;
+use crate::design::estimator_design::EstimatorDesign;
 use crate::finite::are_finite;
 use crate::{
     Airframe, CascadeDesign, Configuration, GRAVITY_M_S2, Measurement, RigidBody, Sensors, Wrench,
@@ -17,6 +18,13 @@ use crate::{
 /// A vehicle that turns slower than this, rad/s, and so many deviations of the noise does not turn.
 const STILL_RAD_S: f64 = 0.2;
 const STILL_DEVIATIONS: f64 = 4.0;
+/// Time after which it is seen whether the vehicle moved when it was taken over, s; from this mean speed on, m/s, and so many deviations of
+/// the noise, it did. One whose thrust is off by its weight is slower.
+const SEEN_S: f64 = 0.03;
+const MOVING_M_S: f64 = 0.5;
+const MOVING_DEVIATIONS: f64 = 6.0;
+/// So many times the lag of a disturbance it takes for such a motion to be found.
+const SETTLING_LAGS: f64 = 5.0;
 
 /// The estimate of the vehicle's motion at the next sample of the attitude controller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,6 +37,11 @@ pub struct Estimator {
     /// Speeds of the rotors by their model, rad/s.
     rotor_speed_rad_s: [f64; 4],
     time_us: u64,
+    /// When and where it took the vehicle over, µs and NED, m.
+    since_us: u64,
+    start_m: Vector3<f64>,
+    /// Whether the vehicle moved then, as far as that was not measured; `None` until it is seen.
+    moved: Option<bool>,
 }
 
 impl Estimator {
@@ -47,6 +60,28 @@ impl Estimator {
             disturbance_rad_s2: Vector3::zeros(),
             rotor_speed_rad_s,
             time_us,
+            since_us: time_us,
+            start_m: measured.position_m,
+            moved: None,
+        }
+    }
+
+    /// Whether the motion with which it began is known at a time, µs: without a measured velocity it begins with one at rest.
+    pub(crate) fn is_settled(&self, design: &EstimatorDesign, time_us: u64) -> bool {
+        self.moved != Some(true) || self.age_s(time_us) > SETTLING_LAGS * design.disturbance_lag_s
+    }
+
+    /// Time since it took the vehicle over, s.
+    fn age_s(&self, time_us: u64) -> f64 {
+        time_us.saturating_sub(self.since_us) as f64 / 1e6
+    }
+
+    /// Looks whether the vehicle moved when it was taken over.
+    fn watch_start(&mut self, sensors: &Sensors, measured: &RigidBody, time_us: u64) {
+        let age_s = self.age_s(time_us);
+        if self.moved.is_none() && age_s >= SEEN_S {
+            let noise_m = MOVING_DEVIATIONS * sensors.position_noise_m;
+            self.moved = Some((measured.position_m - self.start_m).norm() > MOVING_M_S * age_s + noise_m);
         }
     }
 
@@ -83,6 +118,7 @@ impl Estimator {
     /// The origin of positions is elsewhere: they are by so much more, m.
     pub(crate) fn shift(&mut self, by_m: &Vector3<f64>) {
         self.body.position_m += by_m;
+        self.start_m += by_m;
     }
 
     /// The motion predicted for `time_us`, a fraction of a sample away at most.
@@ -104,6 +140,7 @@ impl Estimator {
             && are_finite(self.disturbance_m_s2.as_slice())
             && are_finite(self.disturbance_rad_s2.as_slice())
             && are_finite(&self.rotor_speed_rad_s)
+            && are_finite(self.start_m.as_slice())
     }
 
     /// Acceleration that thrust, gravity and drag do not explain, NED, m/s².
@@ -149,6 +186,7 @@ impl Estimator {
         (time_us, period_us): (u64, u64),
     ) {
         let design = &cascade.estimator;
+        self.watch_start(&configuration.sensors, measured, time_us);
         // A sample time that has changed moves the sample away from the time that was predicted for.
         self.body = self.body_at(time_us);
         let believed = configuration.controllers.mass_factor;

@@ -58,8 +58,8 @@ const CATCHING_UP_WITH_FASTER: f64 = 0.1;
 /// The same of a way that limits bend: the vehicle is behind it, or is led back by it to a reference that it has lost. A plan that had to keep
 /// to its speed would give way at all limits, and swing about the way for ever.
 const CATCHING_UP_WITH_BENT: f64 = 0.2;
-/// How much more jerk than a reference that limits bend the feedback may use, as a share of the limit. Such a reference turns near the limit
-/// all the way round: a plan of a few functions of time, kept to it at each sample, would never come back to its way.
+/// How much more jerk and snap than a reference asks for the feedback may use, as a share of their limits. A reference that turns near them
+/// does so all the way round: a plan of a few functions of time, kept to them at each sample, would never come back to its way.
 const TURNING_BACK: f64 = 0.5;
 /// What rounding makes of a reference at the speed limit.
 const ROUNDING: f64 = 1.0 + 1e-6;
@@ -155,7 +155,7 @@ pub(crate) struct Asked {
 }
 
 /// Values of [`position_limits`], the commanded acceleration being at most `present_m_s2` now and `lasting_m_s2` later on, under what the
-/// reference asks for: see [`most_speed_m_s`] and [`with_faster`].
+/// reference asks for: see [`most_speed_m_s`] and [`with_room`].
 pub(crate) fn position_bounds(
     limits: &Limits,
     (present_m_s2, lasting_m_s2): (f64, f64),
@@ -166,15 +166,10 @@ pub(crate) fn position_bounds(
     let share = if asked.is_narrow { FOLLOWED } else { 1.0 };
     let [most_m_s3, most_m_s4] =
         [limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2].map(|limit| share * GRAVITY_M_S2 * limit);
-    let turning = with_faster(most_m_s4, asked.snap_m_s4, CATCHING_UP_WITH_FASTER).max(under_way.snap_m_s4)
-        + ANSWER_1_S * under_way.jump_m_s3;
+    let turning =
+        with_room(most_m_s4, asked.snap_m_s4).max(under_way.snap_m_s4) + ANSWER_1_S * under_way.jump_m_s3;
     let is_bent = asked.is_held || asked.is_narrow;
-    let leaning = if is_bent {
-        most_m_s3.max(asked.jerk_m_s3 + TURNING_BACK * most_m_s3)
-    } else {
-        with_faster(most_m_s3, asked.jerk_m_s3, CATCHING_UP_WITH_FASTER)
-    };
-    let leaning = leaning.max(under_way.jerk_m_s3);
+    let leaning = with_room(most_m_s3, asked.jerk_m_s3).max(under_way.jerk_m_s3);
     let limit_m_s = limits.speed_horizontal_m_s;
     let speed = if is_bent {
         faster_m_s(limit_m_s, asked.speed_m_s, CATCHING_UP_WITH_BENT)
@@ -237,9 +232,9 @@ fn faster_m_s(limit_m_s: f64, asked_m_s: f64, share: f64) -> f64 {
     limit_m_s.max(asked_m_s + catching_up_m_s(limit_m_s, share))
 }
 
-/// A limit, or by a share of it more than a reference that asks for more than it.
-fn with_faster(limit: f64, asked: f64, share: f64) -> f64 {
-    if asked > ROUNDING * limit { asked + share * limit } else { limit }
+/// A limit, or as much more than a reference asks for as feedback needs beside it.
+fn with_room(limit: f64, asked: f64) -> f64 {
+    limit.max(asked + TURNING_BACK * limit)
 }
 
 fn catching_up_share(limit_m_s: f64, asked_m_s: f64) -> f64 {
@@ -342,25 +337,18 @@ mod tests {
         }
     }
 
-    /// A reference that turns faster than the limits is followed; what is slower changes nothing.
+    /// A reference that turns near the limits, or faster, leaves feedback room; what is slower changes nothing.
     #[test]
     fn a_fast_turn_moves_the_limits_of_the_tilt() {
         let limits = Limits::default();
         let [leaning, turning] =
             [limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2].map(|limit| GRAVITY_M_S2 * limit);
-        for (is_held, share, turned, leant) in [
-            (false, 0.9, 1.0, 1.0),
-            (false, 1.0, 1.0, 1.0),
-            (false, 1.5, 1.6, 1.6),
-            (true, 0.4, 1.0, 1.0),
-            (true, 0.9, 1.0, 1.4),
-            (true, 1.5, 1.6, 2.0),
-        ] {
+        for (share, most) in [(0.4, 1.0), (0.9, 1.4), (1.5, 2.0)] {
             let (jerk_m_s3, snap_m_s4) = (share * leaning, share * turning);
-            let asked = Asked { jerk_m_s3, snap_m_s4, is_held, ..Asked::default() };
+            let asked = Asked { jerk_m_s3, snap_m_s4, ..Asked::default() };
             let bounds = position_bounds(&limits, (5.0, 4.0), &asked, TurnUnderWay::default());
-            assert!((bounds[2 * SIDES] / turning - turned).abs() < 1e-12);
-            assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - leant).abs() < 1e-12);
+            assert!((bounds[2 * SIDES] / turning - most).abs() < 1e-12);
+            assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - most).abs() < 1e-12);
         }
     }
 

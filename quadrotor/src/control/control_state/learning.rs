@@ -31,6 +31,11 @@ impl ControlState {
             return believed;
         }
         let by_position = configuration.sensors.output_feedback;
+        if by_position && !self.estimator.is_settled(&cascade.estimator, time_us) {
+            // A velocity that is not known yet would pass for a force, and that for a mass.
+            self.learned.interrupt();
+            return believed;
+        }
         let seen = self.estimator.seen(&configuration.sensors, measured, time_us);
         let sample = FlightSample {
             motion: if by_position {
