@@ -166,9 +166,14 @@ pub(crate) fn position_bounds(
     let share = if asked.is_narrow { FOLLOWED } else { 1.0 };
     let [most_m_s3, most_m_s4] =
         [limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2].map(|limit| share * GRAVITY_M_S2 * limit);
-    let turning =
-        with_room(most_m_s4, asked.snap_m_s4).max(under_way.snap_m_s4) + ANSWER_1_S * under_way.jump_m_s3;
     let is_bent = asked.is_held || asked.is_narrow;
+    let turning = if is_bent {
+        // Beside a large lean, weak rotors have no torque to spare.
+        with_faster(most_m_s4, asked.snap_m_s4)
+    } else {
+        with_room(most_m_s4, asked.snap_m_s4)
+    };
+    let turning = turning.max(under_way.snap_m_s4) + ANSWER_1_S * under_way.jump_m_s3;
     let leaning = with_room(most_m_s3, asked.jerk_m_s3).max(under_way.jerk_m_s3);
     let limit_m_s = limits.speed_horizontal_m_s;
     let speed = if is_bent {
@@ -235,6 +240,11 @@ fn faster_m_s(limit_m_s: f64, asked_m_s: f64, share: f64) -> f64 {
 /// A limit, or as much more than a reference asks for as feedback needs beside it.
 fn with_room(limit: f64, asked: f64) -> f64 {
     limit.max(asked + TURNING_BACK * limit)
+}
+
+/// A limit, or a little more than a reference that asks for more than it.
+fn with_faster(limit: f64, asked: f64) -> f64 {
+    if asked > ROUNDING * limit { asked + CATCHING_UP_WITH_FASTER * limit } else { limit }
 }
 
 fn catching_up_share(limit_m_s: f64, asked_m_s: f64) -> f64 {
@@ -348,6 +358,11 @@ mod tests {
             let asked = Asked { jerk_m_s3, snap_m_s4, ..Asked::default() };
             let bounds = position_bounds(&limits, (5.0, 4.0), &asked, TurnUnderWay::default());
             assert!((bounds[2 * SIDES] / turning - most).abs() < 1e-12);
+            assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - most).abs() < 1e-12);
+            let bent = Asked { is_held: true, ..asked };
+            let bounds = position_bounds(&limits, (5.0, 4.0), &bent, TurnUnderWay::default());
+            let turned = if share > 1.0 { share + 0.1 } else { 1.0 };
+            assert!((bounds[2 * SIDES] / turning - turned).abs() < 1e-12);
             assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - most).abs() < 1e-12);
         }
     }
