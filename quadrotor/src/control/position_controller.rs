@@ -337,6 +337,7 @@ fn foreseen<'a>(
     let beside = ASKED[..FADED].iter().filter_map(|sample| asked(*sample));
     let all = ASKED.into_iter().map(ahead).chain(beside).chain([*reference]);
     let asked = Asked {
+        is_streamed: ASKED.first().is_some_and(|sample| asked(*sample).is_some()),
         is_held: reference.is_bent && !reference.is_narrow,
         is_narrow: reference.is_bent && reference.is_narrow,
         ..Asked::default()

@@ -50,7 +50,7 @@ struct Kind {
     most: [f64; 2],
 }
 
-const VELOCITY: Kind = Kind { fastest_rad_s: 1.0, unsure: 1e-3, most: [0.5, 0.4] };
+const VELOCITY: Kind = Kind { fastest_rad_s: 1.0, unsure: 1e-3, most: [0.2, 0.15] };
 const BODY_RATE: Kind = Kind { fastest_rad_s: 0.55, unsure: 5e-4, most: [0.2, 0.1] };
 
 impl Kind {

@@ -61,6 +61,8 @@ const CATCHING_UP_WITH_BENT: f64 = 0.2;
 /// How much more jerk and snap than a reference asks for the feedback may use, as a share of their limits. A reference that turns near them
 /// does so all the way round: a plan of a few functions of time, kept to them at each sample, would never come back to its way.
 const TURNING_BACK: f64 = 0.5;
+/// The same of the jerk of a reference that is followed whole: with more, a way that is braked for lowered limits is overshot.
+const STREAMED_BACK: f64 = 0.25;
 /// What rounding makes of a reference at the speed limit.
 const ROUNDING: f64 = 1.0 + 1e-6;
 /// With how much snap per jerk the attitude loop answers at most when the jerk of the reference jumps, 1/s.
@@ -148,6 +150,8 @@ pub(crate) struct Asked {
     pub(crate) jerk_m_s3: f64,
     /// Snap, m/s⁴.
     pub(crate) snap_m_s4: f64,
+    /// Whether nobody has told how it goes on: what is foreseen of it is no plan that keeps limits.
+    pub(crate) is_streamed: bool,
     /// Whether limits bend it, and hardly any of it is left out for that.
     pub(crate) is_held: bool,
     /// Whether limits bend it although much of it is left out.
@@ -167,14 +171,21 @@ pub(crate) fn position_bounds(
     let [most_m_s3, most_m_s4] =
         [limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2].map(|limit| share * GRAVITY_M_S2 * limit);
     let is_bent = asked.is_held || asked.is_narrow;
-    let turning = if is_bent {
-        // Beside a large lean, weak rotors have no torque to spare.
-        with_faster(most_m_s4, asked.snap_m_s4)
+    // Beside a large lean, weak rotors have no torque to spare.
+    let turning = if asked.is_streamed && !is_bent {
+        with_room(most_m_s4, asked.snap_m_s4, TURNING_BACK)
     } else {
-        with_room(most_m_s4, asked.snap_m_s4)
+        with_faster(most_m_s4, asked.snap_m_s4)
     };
     let turning = turning.max(under_way.snap_m_s4) + ANSWER_1_S * under_way.jump_m_s3;
-    let leaning = with_room(most_m_s3, asked.jerk_m_s3).max(under_way.jerk_m_s3);
+    let leaning = if is_bent {
+        with_room(most_m_s3, asked.jerk_m_s3, TURNING_BACK)
+    } else if asked.is_streamed {
+        with_room(most_m_s3, asked.jerk_m_s3, STREAMED_BACK)
+    } else {
+        with_faster(most_m_s3, asked.jerk_m_s3)
+    };
+    let leaning = leaning.max(under_way.jerk_m_s3);
     let limit_m_s = limits.speed_horizontal_m_s;
     let speed = if is_bent {
         faster_m_s(limit_m_s, asked.speed_m_s, CATCHING_UP_WITH_BENT)
@@ -237,9 +248,9 @@ fn faster_m_s(limit_m_s: f64, asked_m_s: f64, share: f64) -> f64 {
     limit_m_s.max(asked_m_s + catching_up_m_s(limit_m_s, share))
 }
 
-/// A limit, or as much more than a reference asks for as feedback needs beside it.
-fn with_room(limit: f64, asked: f64) -> f64 {
-    limit.max(asked + TURNING_BACK * limit)
+/// A limit, or as much more than a reference asks for as feedback needs beside it, as a share of the limit.
+fn with_room(limit: f64, asked: f64, share: f64) -> f64 {
+    limit.max(asked + share * limit)
 }
 
 /// A limit, or a little more than a reference that asks for more than it.
@@ -355,15 +366,20 @@ mod tests {
             [limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2].map(|limit| GRAVITY_M_S2 * limit);
         for (share, most) in [(0.4, 1.0), (0.9, 1.4), (1.5, 2.0)] {
             let (jerk_m_s3, snap_m_s4) = (share * leaning, share * turning);
-            let asked = Asked { jerk_m_s3, snap_m_s4, ..Asked::default() };
+            let asked = Asked { jerk_m_s3, snap_m_s4, is_streamed: true, ..Asked::default() };
             let bounds = position_bounds(&limits, (5.0, 4.0), &asked, TurnUnderWay::default());
             assert!((bounds[2 * SIDES] / turning - most).abs() < 1e-12);
-            assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - most).abs() < 1e-12);
+            let leant = f64::max(1.0, share + 0.25);
+            assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - leant).abs() < 1e-12);
             let bent = Asked { is_held: true, ..asked };
             let bounds = position_bounds(&limits, (5.0, 4.0), &bent, TurnUnderWay::default());
             let turned = if share > 1.0 { share + 0.1 } else { 1.0 };
             assert!((bounds[2 * SIDES] / turning - turned).abs() < 1e-12);
             assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - most).abs() < 1e-12);
+            let planned = Asked { is_streamed: false, ..asked };
+            let bounds = position_bounds(&limits, (5.0, 4.0), &planned, TurnUnderWay::default());
+            assert!((bounds[2 * SIDES] / turning - turned).abs() < 1e-12);
+            assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - turned).abs() < 1e-12);
         }
     }
 
