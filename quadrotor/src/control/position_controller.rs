@@ -334,11 +334,12 @@ fn foreseen<'a>(
         let state = turn.state(&(state_of(&then) - state_of(reference)));
         (state, turn.vector(&(then.thrust - reference.thrust)))
     });
-    let beside = ASKED[..FADED].iter().filter_map(|sample| asked(*sample));
-    let all = ASKED.into_iter().map(ahead).chain(beside).chain([*reference]);
+    let beside: [_; FADED] = core::array::from_fn(|place| asked(ASKED[place]));
+    let is_streamed = beside.iter().any(Option::is_some);
+    let all = ASKED.into_iter().map(ahead).chain(beside.into_iter().flatten()).chain([*reference]);
     let asked = Asked {
-        is_streamed: ASKED.first().is_some_and(|sample| asked(*sample).is_some()),
-        is_held: reference.is_bent && !reference.is_narrow,
+        is_streamed,
+        is_bent: reference.is_bent,
         is_narrow: reference.is_bent && reference.is_narrow,
         ..Asked::default()
     };

@@ -139,6 +139,7 @@ mod tests {
     use nalgebra::{UnitQuaternion, Vector3};
 
     use super::{BODY_RATE, Kind, RateBias, VELOCITY};
+    use crate::sensors::NoiseState;
     use crate::{Configuration, Measurement, PlantState, RigidBody, Sensors};
 
     const STEP_US: u64 = 10_000;
@@ -200,24 +201,10 @@ mod tests {
     #[test]
     fn noise_is_no_bias() {
         let sensors = Sensors { position_noise_m: 0.02, velocity_noise_m_s: 0.05, ..Sensors::default() };
-        let mut number = 1_u64;
-        // A sum of twelve even numbers has a variance of one.
-        let mut gaussian = || {
-            let even = (0..12).map(|_| {
-                number =
-                    number.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                (number >> 11) as f64 / (1_u64 << 53) as f64
-            });
-            even.sum::<f64>() - 6.0
-        };
-        let (mut bias, mut sum, mut count) = (RateBias::default(), 0.0_f64, 0.0_f64);
+        let (mut bias, mut noise) = (RateBias::default(), NoiseState::default());
+        let (mut sum, mut count) = (0.0_f64, 0.0_f64);
         for step in 0..200_000 {
-            let RigidBody { position_m, velocity_m_s, .. } = hover().motion;
-            let measured = RigidBody {
-                position_m: position_m + Vector3::x() * 0.02 * gaussian(),
-                velocity_m_s: velocity_m_s + Vector3::x() * 0.05 * gaussian(),
-                ..hover().motion
-            };
+            let measured = noise.read(&sensors, &hover().motion);
             bias.observe(&sensors, &measured, step * STEP_US);
             if step > 20_000 {
                 sum += bias.velocity.rate.x.powi(2);

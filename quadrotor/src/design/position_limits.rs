@@ -152,9 +152,9 @@ pub(crate) struct Asked {
     pub(crate) snap_m_s4: f64,
     /// Whether nobody has told how it goes on: what is foreseen of it is no plan that keeps limits.
     pub(crate) is_streamed: bool,
-    /// Whether limits bend it, and hardly any of it is left out for that.
-    pub(crate) is_held: bool,
-    /// Whether limits bend it although much of it is left out.
+    /// Whether limits bend it.
+    pub(crate) is_bent: bool,
+    /// Whether they do although much of it is left out.
     pub(crate) is_narrow: bool,
 }
 
@@ -170,25 +170,20 @@ pub(crate) fn position_bounds(
     let share = if asked.is_narrow { FOLLOWED } else { 1.0 };
     let [most_m_s3, most_m_s4] =
         [limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2].map(|limit| share * GRAVITY_M_S2 * limit);
-    let is_bent = asked.is_held || asked.is_narrow;
-    // Beside a large lean, weak rotors have no torque to spare.
-    let turning = if asked.is_streamed && !is_bent {
-        with_room(most_m_s4, asked.snap_m_s4, TURNING_BACK)
-    } else {
-        with_faster(most_m_s4, asked.snap_m_s4)
-    };
-    let turning = turning.max(under_way.snap_m_s4) + ANSWER_1_S * under_way.jump_m_s3;
-    let leaning = if is_bent {
-        with_room(most_m_s3, asked.jerk_m_s3, TURNING_BACK)
+    let (jerk_m_s3, snap_m_s4) = (asked.jerk_m_s3, asked.snap_m_s4);
+    let [leaning, turning] = if asked.is_bent {
+        // Beside a large lean, weak rotors have no torque to spare.
+        [with_room(most_m_s3, jerk_m_s3, TURNING_BACK), with_faster(most_m_s4, snap_m_s4)]
     } else if asked.is_streamed {
-        with_room(most_m_s3, asked.jerk_m_s3, STREAMED_BACK)
+        [with_room(most_m_s3, jerk_m_s3, STREAMED_BACK), with_room(most_m_s4, snap_m_s4, TURNING_BACK)]
     } else {
-        with_faster(most_m_s3, asked.jerk_m_s3)
+        [with_faster(most_m_s3, jerk_m_s3), with_faster(most_m_s4, snap_m_s4)]
     };
     let leaning = leaning.max(under_way.jerk_m_s3);
+    let turning = turning.max(under_way.snap_m_s4) + ANSWER_1_S * under_way.jump_m_s3;
     let limit_m_s = limits.speed_horizontal_m_s;
-    let speed = if is_bent {
-        faster_m_s(limit_m_s, asked.speed_m_s, CATCHING_UP_WITH_BENT)
+    let speed = if asked.is_bent {
+        limit_m_s.max(asked.speed_m_s + by_share_m_s(CATCHING_UP_WITH_BENT, limit_m_s))
     } else {
         most_speed_m_s(limit_m_s, asked.speed_m_s)
     };
@@ -240,12 +235,7 @@ pub(crate) fn planned_horizon_m(
 
 /// The largest speed, m/s, while a reference asks for speeds up to `asked_m_s`: the limit, and what it takes to catch up with it.
 pub(crate) fn most_speed_m_s(limit_m_s: f64, asked_m_s: f64) -> f64 {
-    faster_m_s(limit_m_s, asked_m_s, catching_up_share(limit_m_s, asked_m_s))
-}
-
-/// The same with a share of the limit to catch up by.
-fn faster_m_s(limit_m_s: f64, asked_m_s: f64, share: f64) -> f64 {
-    limit_m_s.max(asked_m_s + catching_up_m_s(limit_m_s, share))
+    limit_m_s.max(asked_m_s + catching_up_m_s(limit_m_s, asked_m_s))
 }
 
 /// A limit, or as much more than a reference asks for as feedback needs beside it, as a share of the limit.
@@ -258,11 +248,13 @@ fn with_faster(limit: f64, asked: f64) -> f64 {
     if asked > ROUNDING * limit { asked + CATCHING_UP_WITH_FASTER * limit } else { limit }
 }
 
-fn catching_up_share(limit_m_s: f64, asked_m_s: f64) -> f64 {
-    if asked_m_s > ROUNDING * limit_m_s { CATCHING_UP_WITH_FASTER } else { CATCHING_UP }
+fn catching_up_m_s(limit_m_s: f64, asked_m_s: f64) -> f64 {
+    let share = if asked_m_s > ROUNDING * limit_m_s { CATCHING_UP_WITH_FASTER } else { CATCHING_UP };
+    by_share_m_s(share, limit_m_s)
 }
 
-fn catching_up_m_s(limit_m_s: f64, share: f64) -> f64 {
+/// A share of a speed limit to catch up by, m/s.
+fn by_share_m_s(share: f64, limit_m_s: f64) -> f64 {
     (share * limit_m_s).max(LEAST_CATCHING_UP_M_S)
 }
 
@@ -272,8 +264,7 @@ fn catching_up_m_s(limit_m_s: f64, share: f64) -> f64 {
 /// A plan ends on its reference. One that may not go faster than a reference at the speed limit would put off catching up until after
 /// the samples on which it is limited, and fall behind before.
 pub(crate) fn closing_share(limit_m_s: f64, ahead_m_s: f64) -> f64 {
-    let share = catching_up_share(limit_m_s, ahead_m_s);
-    let least = (catching_up_m_s(limit_m_s, share) / limit_m_s).min(1.0);
+    let least = (catching_up_m_s(limit_m_s, ahead_m_s) / limit_m_s).min(1.0);
     (1.0 - ahead_m_s / limit_m_s).clamp(least, 1.0)
 }
 
@@ -371,7 +362,7 @@ mod tests {
             assert!((bounds[2 * SIDES] / turning - most).abs() < 1e-12);
             let leant = f64::max(1.0, share + 0.25);
             assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - leant).abs() < 1e-12);
-            let bent = Asked { is_held: true, ..asked };
+            let bent = Asked { is_bent: true, ..asked };
             let bounds = position_bounds(&limits, (5.0, 4.0), &bent, TurnUnderWay::default());
             let turned = if share > 1.0 { share + 0.1 } else { 1.0 };
             assert!((bounds[2 * SIDES] / turning - turned).abs() < 1e-12);
@@ -387,7 +378,7 @@ mod tests {
     #[test]
     fn a_narrowed_way_may_turn_as_fast_as_it_is_followed() {
         let limits = Limits::default();
-        let asked = Asked { is_narrow: true, ..Asked::default() };
+        let asked = Asked { is_bent: true, is_narrow: true, ..Asked::default() };
         let bounds = position_bounds(&limits, (5.0, 4.0), &asked, TurnUnderWay::default());
         let turning = bounds[2 * SIDES] / (GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
         let leaning = bounds[2 * SIDES + COARSE_SIDES] / (GRAVITY_M_S2 * limits.tilt_rate_rad_s);
@@ -411,7 +402,7 @@ mod tests {
         };
         for (speed_m_s, most_m_s) in [(6.0, 8.0), (7.5, 9.1), (10.0, 11.6)] {
             for is_narrow in [false, true] {
-                let bent = Asked { speed_m_s, is_narrow, is_held: !is_narrow, ..Asked::default() };
+                let bent = Asked { speed_m_s, is_bent: true, is_narrow, ..Asked::default() };
                 assert!((of_bent(bent) - 0.995 * most_m_s).abs() < 1e-12);
             }
         }

@@ -12,8 +12,8 @@ use crate::{GRAVITY_M_S2, Limits, PositionReference};
 const MOTION: f64 = 1.5;
 /// So many samples tell the derivatives of a motion well.
 const SETTLED: usize = 9;
-/// Derivatives that are told so well may be so many times as large: those of a motion far beyond the limits are such, and one of which part is
-/// left out is none. What cannot be followed of it is told from the whole.
+/// Derivatives that are told so well may be so many times as large: a path may be far beyond the limits. Cut off, they would not be those of
+/// one motion, and nobody would see how much of the path to leave out.
 const FAR_BEYOND: f64 = 4.0;
 /// Multiple of the limits of jerk beyond which a change of the acceleration counts as a jump, not as motion.
 const JERK_JUMP: f64 = 10.0;

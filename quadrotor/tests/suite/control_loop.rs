@@ -8,7 +8,7 @@ use quadrotor::{
     PlantInputs, PlantState, PositionReference, Simulation, Target,
 };
 
-use crate::common::unshaped;
+use crate::common::{KINDS, exact, fly_plant, unshaped, unshaped_by};
 
 /// A vehicle that sways, whatever it is commanded.
 fn swaying(time_us: u64) -> Measurement {
@@ -20,7 +20,7 @@ fn swaying(time_us: u64) -> Measurement {
     state.body.attitude =
         UnitQuaternion::from_euler_angles(0.05 * (3.0 * t).sin(), 0.03, 0.1 * t).into_inner();
     state.rotor_speed_rad_s[1] += 5.0 * t.sin();
-    Measurement { motion: state.body, rotor_speed_rad_s: state.rotor_speed_rad_s }
+    exact(&state)
 }
 
 /// Every law in turn, armed late and disarmed once.
@@ -40,16 +40,6 @@ fn asked(time_us: u64) -> ControlInputs {
     ControlInputs { armed, ..ControlInputs::armed(target) }
 }
 
-fn flying(kind: ControllerKind) -> Configuration {
-    let mut configuration = unshaped();
-    configuration.controllers.kind = kind;
-    configuration.sensors.output_feedback = true;
-    configuration
-}
-
-const KINDS: [ControllerKind; 3] =
-    [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr];
-
 fn new_loop(configuration: &Configuration, time_us: u64) -> ControlLoop {
     ControlLoop::new(configuration, &asked(time_us), &mut swaying, time_us).unwrap()
 }
@@ -62,7 +52,7 @@ proptest! {
     fn it_is_the_same_whatever_the_callers_step(
         mut times in prop::collection::vec(0u64..2_000_000, 0..300), kind in 0..3_usize,
     ) {
-        let configuration = flying(KINDS[kind]);
+        let configuration = unshaped_by(KINDS[kind], true);
         times.sort_unstable();
         times.push(2_000_000);
         let (mut split, mut whole) = (new_loop(&configuration, 0), new_loop(&configuration, 0));
@@ -77,7 +67,7 @@ proptest! {
 
     #[test]
     fn saved_and_restored_it_goes_on_bit_for_bit(middle in 0u64..2_000_000, kind in 0..3_usize) {
-        let configuration = flying(KINDS[kind]);
+        let configuration = unshaped_by(KINDS[kind], true);
         let mut straight = new_loop(&configuration, 0);
         straight.advance_to(middle, &asked, &mut swaying).unwrap();
         let bytes = postcard::to_allocvec(straight.state()).unwrap();
@@ -96,7 +86,7 @@ proptest! {
 #[test]
 fn no_law_allocates_in_a_step() {
     for kind in KINDS {
-        let mut control = new_loop(&flying(kind), 0);
+        let mut control = new_loop(&unshaped_by(kind, true), 0);
         let allocations = allocation_counter::measure(|| {
             control.advance_to(2_000_000, &asked, &mut swaying).unwrap();
         });
@@ -189,7 +179,7 @@ fn the_plant_answers_to_the_commanded_wrench_with_a_first_order_lag() {
 
 #[test]
 fn a_vehicle_is_taken_over_anew_as_by_a_new_loop() {
-    let configuration = flying(ControllerKind::Lmpc);
+    let configuration = unshaped_by(ControllerKind::Lmpc, true);
     let mut control = new_loop(&configuration, 0);
     control.advance_to(2_000_000, &asked, &mut swaying).unwrap();
     control.take_over(&asked(7_001_000), &mut swaying, 7_001_000).unwrap();
@@ -207,19 +197,18 @@ fn hover_with_biased_rates_m(preset: AirframePreset, kind: ControllerKind) -> f6
     configuration.reference.shaping = false;
     configuration.controllers.kind = kind;
     let plant = Plant::new(&configuration.airframe, &configuration.environment);
-    let mut state = PlantState::hovering(&configuration.initial, &configuration.airframe);
+    let state = PlantState::hovering(&configuration.initial, &configuration.airframe);
     let measured = |state: &PlantState| {
-        let mut measured = Measurement { motion: state.body, rotor_speed_rad_s: state.rotor_speed_rad_s };
+        let mut measured = exact(state);
         measured.motion.velocity_m_s += Vector3::new(0.1, -0.05, 0.1);
         measured.motion.body_rate_rad_s += Vector3::new(0.05, -0.05, 0.02);
         measured
     };
     let inputs = ControlInputs::armed(Target::Reference(PositionReference::goal([0.0; 3], 0.0)));
-    let mut control = ControlLoop::new(&configuration, &inputs, &mut measured(&state), 0).unwrap();
-    for time_us in (0..60_000_000).step_by(1_000) {
-        let command_rad_s = control.advance_to(time_us, &inputs, &mut measured(&state)).unwrap();
-        state = plant.step(&state, &PlantInputs::rotor_speeds(command_rad_s), 1e-3);
-    }
+    let (state, _) =
+        fly_plant(&configuration, (state, &inputs), measured, 60.0, |_, state, command_rad_s| {
+            plant.step(state, &PlantInputs::rotor_speeds(command_rad_s), 1e-3)
+        });
     state.body.position_m.norm()
 }
 

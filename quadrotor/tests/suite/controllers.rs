@@ -4,10 +4,9 @@ use lmpc::Status;
 use nalgebra::Vector3;
 use quadrotor::{Activity, Configuration, ControllerActivity, ControllerKind, Sensors};
 
-use crate::common::{Extremes, GOAL_M, distance, fly, goal, noisy, overshoot, smooth_flight, unshaped};
-
-const KINDS: [ControllerKind; 3] =
-    [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr];
+use crate::common::{
+    Extremes, GOAL_M, KINDS, distance, fly, goal, noisy, overshoot, smooth_flight, unshaped,
+};
 
 fn of_kind(kind: ControllerKind, configuration: Configuration) -> Configuration {
     let mut configuration = configuration;

@@ -3,11 +3,11 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use quadrotor::{
-    AttitudeTarget, Configuration, ConfigurationError, ControllerKind, Disturbance, InputSignal, Inputs,
-    PlantInputs, Sensors, Simulation, SimulationError,
+    AttitudeTarget, Configuration, ConfigurationError, Disturbance, InputSignal, Inputs, PlantInputs,
+    Sensors, Simulation, SimulationError,
 };
 
-use crate::common::{GOAL_M, goal, smooth_flight, unshaped};
+use crate::common::{GOAL_M, KINDS, goal, smooth_flight, unshaped};
 
 /// A flight with a wind that changes and a goal that jumps, so that every part has something to do.
 fn eventful(time_us: u64) -> Inputs {
@@ -20,8 +20,7 @@ fn eventful(time_us: u64) -> Inputs {
 /// Any kind of controller on noisy outputs alone: active sets, estimates and noise are part of the state.
 fn noisy(kind: usize) -> Configuration {
     let mut configuration = Configuration::default();
-    configuration.controllers.kind =
-        [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr][kind];
+    configuration.controllers.kind = KINDS[kind];
     configuration.sensors = Sensors {
         output_feedback: true,
         position_noise_m: 0.03,

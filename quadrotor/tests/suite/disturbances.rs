@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::common::numbers::Numbers;
 use crate::common::trajectory::Trajectory;
-use crate::common::{farthest_m, fly};
+use crate::common::{KINDS, farthest_m, fly};
 use nalgebra::Vector3;
 use quadrotor::{
     AirframePreset, Configuration, ControllerKind, Disturbance, Inputs, PositionReference, Sensors,
@@ -213,9 +213,8 @@ fn a_torque_is_held_close_to_the_ground() {
 /// heading turned went round in circles of up to 6 m.
 #[test]
 fn a_weight_beside_the_centre_turns_with_the_heading() {
-    let kinds = [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr];
     for preset in AirframePreset::ALL {
-        for (kind, turning_rad_s) in kinds.into_iter().flat_map(|kind| [0.8, -3.0].map(|rate| (kind, rate))) {
+        for (kind, turning_rad_s) in KINDS.into_iter().flat_map(|kind| [0.8, -3.0].map(|rate| (kind, rate))) {
             for output_feedback in [false, true] {
                 let mut configuration = raw(preset, kind);
                 configuration.limits.yaw_rate_rad_s = 3.0;
@@ -243,9 +242,8 @@ fn a_weight_beside_the_centre_turns_with_the_heading() {
 /// A torque that one law has held for long begins for none of those that take over.
 #[test]
 fn a_torque_that_is_held_does_not_begin_when_another_law_takes_over() {
-    let kinds = [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr];
     for preset in AirframePreset::ALL {
-        for (before, after) in kinds.into_iter().flat_map(|before| kinds.map(|after| (before, after))) {
+        for (before, after) in KINDS.into_iter().flat_map(|before| KINDS.map(|after| (before, after))) {
             let mut configuration = raw(preset, before);
             let airframe = configuration.airframe;
             let torque_n_m = Vector3::new(0.0, 0.05 * airframe.weight_n() * airframe.arm_length_m, 0.0);

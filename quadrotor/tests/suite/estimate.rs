@@ -1,5 +1,6 @@
 //! Flying by an estimate from outside.
 
+use crate::common::KINDS;
 use nalgebra::Vector3;
 use quadrotor::{
     Configuration, ControllerKind, Inputs, Limits, PositionReference, RigidBody, Simulation, SimulationError,
@@ -86,7 +87,7 @@ fn another_origin_changes_no_flight() {
         velocity_m_s: Vector3::new(3.0 * t.cos(), 3.0 * t.sin(), 0.0),
         ..circle(t)
     };
-    for kind in [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr] {
+    for kind in KINDS {
         for way in [&rests as &dyn Fn(f64) -> PositionReference, &goal, &circle, &moving] {
             assert_as_flown_from_another_origin(kind, Limits::default(), false, way);
         }

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use quadrotor::{Airframe, AirframePreset, BatteryPack, Configuration, ControllerKind, Inputs, Simulation};
 
-use crate::common::{distance, farthest_m, fly, goal};
+use crate::common::{KINDS, distance, farthest_m, fly, goal};
 
 /// What makes an option of an airframe without.
 type Change = fn(&mut Airframe);
@@ -111,7 +111,7 @@ fn a_balanced_weight_is_no_motion() {
 #[test]
 fn a_balanced_hover_begins_at_rest() {
     for preset in AirframePreset::ALL {
-        for kind in [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr] {
+        for kind in KINDS {
             for output_feedback in [false, true] {
                 let mut configuration = Configuration::for_airframe(&preset.airframe()).unwrap();
                 configuration.controllers.kind = kind;

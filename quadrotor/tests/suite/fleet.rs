@@ -3,12 +3,11 @@
 use std::num::NonZeroUsize;
 
 use quadrotor::{
-    Configuration, ControllerKind, Disturbance, Fleet, FleetError, Inputs, RotorFault, Sensors, Simulation,
-    SimulationError,
+    Configuration, Disturbance, Fleet, FleetError, Inputs, RotorFault, Sensors, Simulation, SimulationError,
 };
 
 use crate::common::physics::all_physics;
-use crate::common::{goal, unshaped};
+use crate::common::{KINDS, goal, unshaped};
 
 const VEHICLES: usize = 13;
 const END_US: u64 = 1_500_300;
@@ -16,8 +15,7 @@ const END_US: u64 = 1_500_300;
 /// Three kinds of vehicles, with noise of their own.
 fn configuration(vehicle: usize) -> Configuration {
     let mut configuration = unshaped();
-    configuration.controllers.kind =
-        [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr][vehicle % 3];
+    configuration.controllers.kind = KINDS[vehicle % 3];
     configuration.sensors =
         Sensors { position_noise_m: 0.01, seed: vehicle as u32 / 6, ..Sensors::default() };
     configuration

@@ -4,10 +4,7 @@ use crate::common;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use quadrotor::{AttitudeTarget, Configuration, ControllerKind, Inputs, RotorLayout, Simulation};
 
-use crate::common::{goal, unshaped};
-
-const KINDS: [ControllerKind; 3] =
-    [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr];
+use crate::common::{KINDS, goal, unshaped};
 
 /// A flight under an attitude target after a hover in wind: for each 20 ms its time, s, the angle to the target, degrees, and the
 /// thrust as a share of the largest.

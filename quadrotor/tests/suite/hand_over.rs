@@ -9,16 +9,13 @@ use quadrotor::{
     Parameter, PositionReference, RotorFault, Simulation, Wrench, wrench_of_rotors,
 };
 
-use crate::common::goal;
+use crate::common::{KINDS, goal};
 
 /// When parameters change, µs: between two samples of every controller, and between two events.
 const CHANGE_US: u64 = 10_003_400;
 const END_US: u64 = 12_500_000;
 /// Long enough for a sample of each controller, µs, and for its command to be reached.
 const FIRST_COMMANDS_US: u64 = 200_000;
-
-const KINDS: [ControllerKind; 3] =
-    [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr];
 
 fn base(kind: ControllerKind) -> Configuration {
     let mut configuration = Configuration::default();

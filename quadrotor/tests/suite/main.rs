@@ -19,6 +19,7 @@ mod ground;
 mod hand_over;
 mod layouts;
 mod learning;
+mod loads;
 mod lowered_limits;
 mod parameters;
 mod physics;

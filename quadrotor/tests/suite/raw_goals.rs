@@ -1,6 +1,6 @@
 //! Raw goals under slow tilts and slow samples. Others, cruise and side forces are among the bars of the crate `paper`.
 
-use crate::common::{Extremes, distance, fly, goal, noisy, overshoot};
+use crate::common::{Extremes, KINDS, distance, fly, goal, noisy, overshoot};
 use nalgebra::Vector3;
 use quadrotor::{
     AirframePreset, Configuration, ControllerKind, Disturbance, Inputs, Limits, Sensors, Simulation,
@@ -106,7 +106,7 @@ fn long_braking_begins_in_time() {
 fn goals_are_reached_straight_while_the_heading_turns() {
     let paper = (AirframePreset::Paper, Some(2.4), 2.0);
     for (preset, yaw_rate_rad_s, turning_rad_s) in [(AirframePreset::Crazyflie, None, 1.3), paper] {
-        for kind in [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr] {
+        for kind in KINDS {
             let mut configuration = Configuration::for_airframe(&preset.airframe()).unwrap();
             configuration.controllers.kind = kind;
             configuration.reference.shaping = false;

@@ -1,5 +1,6 @@
 //! What a change of tunable parameters redesigns.
 
+use crate::common::KINDS;
 use quadrotor::{
     CascadeDesign, Configuration, ControllerKind, Inputs, PredictionModel, Redesigned, RotorLayout,
     Simulation,
@@ -34,7 +35,7 @@ fn limits_redesign_nothing() {
 
 #[test]
 fn weights_redesign_the_controller_that_has_them() {
-    for kind in [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr] {
+    for kind in KINDS {
         let altitude = redesigned(kind, |changed| changed.controllers.altitude.increment_weight *= 2.0);
         assert_eq!(altitude, Redesigned { altitude: true, ..NONE });
         let position = redesigned(kind, |changed| changed.controllers.position.output_weight *= 2.0);

@@ -3,7 +3,7 @@
 #[cfg(feature = "shaper")]
 use crate::common::goal;
 use crate::common::trajectory::Trajectory;
-use crate::common::{STEP_US, fly, noisy, tilt_rad, unshaped};
+use crate::common::{KINDS, STEP_US, fly, noisy, tilt_rad, unshaped};
 use nalgebra::Vector3;
 use quadrotor::{
     Airframe, AirframePreset, Configuration, ControllerKind, FlatAttitude, InputSignal, Inputs, Limits,
@@ -92,7 +92,7 @@ fn noise_takes_nothing_away_from_a_reference_near_the_largest_lean() {
 /// Root mean square of the distance to a circle of 5 m at 0.5 rad/s, flown under the default limits from rest on it, in its second half
 /// of 40 s, m. It is set each `period_us`, with as many derivatives as asked for, in whole multiples of `rounded_to`, or exactly if that is 0.
 fn streamed(derivatives: i32, period_us: u64, rounded_to: f64) -> f64 {
-    let circle = Trajectory { amplitude_m: [5.0, 5.0, 0.0], ..Trajectory::circle(0.5) };
+    let circle = Trajectory::circle_of(5.0, 0.5);
     let inputs = move |time_us: u64| {
         let t = (time_us / period_us * period_us) as f64 * 1e-6;
         let rounded =
@@ -264,11 +264,7 @@ fn a_geometric_controller_tracks_by_the_flat_attitude() {
 
 /// A circle of an airframe at its rate, from rest on: root mean square of the distance in the second half of 20 s, m.
 fn circled(configuration: &Configuration, (radius_m, rate_rad_s): (f64, f64), kind: ControllerKind) -> f64 {
-    flown(
-        configuration,
-        &Trajectory { amplitude_m: [radius_m, radius_m, 0.0], ..Trajectory::circle(rate_rad_s) },
-        kind,
-    )
+    flown(configuration, &Trajectory::circle_of(radius_m, rate_rad_s), kind)
 }
 
 /// The same of any way.
@@ -331,19 +327,8 @@ fn a_way_beyond_the_limits_is_not_left_for_ever() {
     }
 }
 
-const KINDS: [ControllerKind; 3] =
-    [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr];
-
 fn flown_by_each(configuration: &Configuration, way: &Trajectory) -> [f64; 3] {
     KINDS.map(|kind| flown(configuration, way, kind))
-}
-
-fn level_circle(radius_m: f64, rate_rad_s: f64) -> Trajectory {
-    Trajectory { amplitude_m: [radius_m, radius_m, 0.0], ..Trajectory::circle(rate_rad_s) }
-}
-
-fn level_eight(size_m: f64, rate_rad_s: f64) -> Trajectory {
-    Trajectory { amplitude_m: [size_m, size_m / 2.0, 0.0], ..Trajectory::figure_eight(rate_rad_s) }
 }
 
 /// Ways that are a little beyond the limits, and ones that are narrowed. Laguerre MPC may be a tenth and 3 cm farther away than the best of
@@ -352,13 +337,13 @@ fn level_eight(size_m: f64, rate_rad_s: f64) -> Trajectory {
 #[test]
 fn ways_a_little_beyond_the_limits_are_flown_as_near_as_by_the_best() {
     for way in [
-        level_circle(10.0, 0.8),
-        level_circle(12.0, 0.8),
-        level_circle(6.0, 1.03),
-        level_eight(2.04, 1.3),
-        level_eight(2.04, 1.5),
-        level_eight(3.0, 1.2),
-        level_eight(4.0, 1.0),
+        Trajectory::circle_of(10.0, 0.8),
+        Trajectory::circle_of(12.0, 0.8),
+        Trajectory::circle_of(6.0, 1.03),
+        Trajectory::figure_eight_of(2.04, 1.3),
+        Trajectory::figure_eight_of(2.04, 1.5),
+        Trajectory::figure_eight_of(3.0, 1.2),
+        Trajectory::figure_eight_of(4.0, 1.0),
     ] {
         let inputs = |time_us: u64| Inputs { reference: way.reference(time_us, true), ..Inputs::default() };
         let [planned, free, regulated] =
@@ -373,7 +358,7 @@ fn ways_a_little_beyond_the_limits_are_flown_as_near_as_by_the_best() {
 #[test]
 fn circles_near_the_largest_lean_are_joined() {
     for (radius_m, rate_rad_s) in [(1.2, 2.15), (1.2, 2.153), (0.8, 2.6), (0.8, 2.65), (1.6, 1.9)] {
-        let way = level_circle(radius_m, rate_rad_s);
+        let way = Trajectory::circle_of(radius_m, rate_rad_s);
         let mut configuration = Configuration::for_airframe(&AirframePreset::Crazyflie.airframe()).unwrap();
         configuration.initial.velocity_m_s = way.reference(0, true).velocity_m_s.into();
         for derivatives in [1, 2] {
@@ -394,10 +379,10 @@ fn circles_near_the_largest_lean_are_joined() {
 #[test]
 fn ways_far_beyond_the_limits_are_told_by_points() {
     for (way, derivatives, period_us) in [
-        (level_circle(8.0, 1.2), 0, 50_000),
-        (level_circle(5.0, 1.4), 1, 100_000),
-        (level_eight(5.9, 1.3), 1, 100_000),
-        (level_eight(4.0, 1.4), 0, 20_000),
+        (Trajectory::circle_of(8.0, 1.2), 0, 50_000),
+        (Trajectory::circle_of(5.0, 1.4), 1, 100_000),
+        (Trajectory::figure_eight_of(5.9, 1.3), 1, 100_000),
+        (Trajectory::figure_eight_of(4.0, 1.4), 0, 20_000),
     ] {
         let set = |time_us: u64| {
             let whole = way.reference(time_us / period_us * period_us, true);

@@ -1,9 +1,9 @@
 //! Configurations that would lose the vehicle are refused, at the start and in flight; those that fly badly are warned about.
 
-use crate::common::goal;
+use crate::common::{KINDS, goal};
 use quadrotor::{
-    AirframePreset, Configuration, ConfigurationError, ControllerKind, Inputs, PredictionModel, Sensors,
-    Simulation, StabilityReport, StabilityWarning,
+    AirframePreset, Configuration, ConfigurationError, Inputs, PredictionModel, Sensors, Simulation,
+    StabilityReport, StabilityWarning,
 };
 
 type Change = fn(&mut Configuration);
@@ -250,7 +250,7 @@ fn a_change_is_judged_by_what_it_changes() {
 /// Every kind, with and without the Kalman predictor, a wrong mass and airframes 30 % apart.
 #[test]
 fn ordinary_vehicles_are_accepted() {
-    for kind in [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr] {
+    for kind in KINDS {
         for output_feedback in [false, true] {
             for factor in [0.7, 0.8, 1.0, 1.2, 1.3] {
                 let mut configuration = Configuration::default();

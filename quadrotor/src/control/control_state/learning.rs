@@ -2,7 +2,7 @@
 
 use super::ControlState;
 use crate::control::control_inputs::ControlLaw;
-use crate::control::learning::mass_and_drag::FlightSample;
+use crate::control::learning::flight_sample::FlightSample;
 use crate::control::learning::motion_equation::MeasuredMotion;
 use crate::design::loop_design::LoopDesign;
 use crate::{Belief, Configuration, RigidBody};

@@ -1,21 +1,22 @@
 //! The vehicle's mass and drag, learned from thrust and acceleration in flight.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::control::learning::averaging::{Averaging, SampledAveraging};
+use crate::control::learning::averaging::Averaging;
 use crate::control::learning::bounded_estimate::BoundedEstimate;
 use crate::control::learning::excitation::{Excitation, Shown};
+use crate::control::learning::flight_sample::FlightSample;
 use crate::control::learning::gust_memory::{GustMemory, Surprise};
 use crate::control::learning::motion_equation::{
-    MEMORY_S, MeasuredMotion, MotionEquation, Sampled, Terms, noise_of_positions, noise_of_velocities,
+    MEMORY_S, MotionEquation, Sampled, Terms, noise_of_positions, noise_of_velocities,
 };
 use crate::control::learning::prior_knowledge::{
     DRAG_DEVIATION_1_S, MOST_FORCE_M_S2, UNKNOWNS, Unknowns, believed, prior,
 };
 use crate::control::learning::steady_thrust::SteadyThrust;
 use crate::control::learning::thrust_fit::ThrustFit;
-use crate::{Belief, Configuration, GRAVITY_M_S2, Sensors, wrench_of_rotors};
+use crate::{Belief, Configuration, Sensors};
 
 /// Most inertia that a learned mass stands for, as a multiple of the configured one.
 const MOST_INERTIA_SHARE: f64 = 2.0;
@@ -56,33 +57,8 @@ const FIT_SWINGS: f64 = 20.0;
 /// Time from one equation that is learned from to the next, µs, when a flight has settled: short beside the memory of the filter, so that
 /// those between them tell nothing that the next one does not.
 pub(super) const LEARNS_EACH_US: u64 = 20_000;
-/// Less thrust than this share of the weight is free fall, which shows no mass.
-const LEAST_THRUST_SHARE: f64 = 0.2;
 /// Slower than this, m/s, by what the filter has taken in of the velocity, it may stand on something that carries it.
 const AT_REST_M_S: f64 = 0.02;
-/// Share of a rotor's range of speeds from its upper end at which it is saturated.
-const SATURATED_SHARE: f64 = 1e-3;
-
-/// An instant of a flight.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct FlightSample<'a> {
-    /// What is measured of the motion.
-    pub(crate) motion: MeasuredMotion,
-    /// The velocity that the controllers go by, NED, m/s.
-    pub(crate) velocity_m_s: Vector3<f64>,
-    /// Whether nothing touches the vehicle.
-    pub(crate) is_clear: bool,
-    /// FRD into NED.
-    pub(crate) attitude: UnitQuaternion<f64>,
-    /// Speeds of the rotors, measured or by their model, rad/s.
-    pub(crate) rotor_speed_rad_s: &'a [f64; 4],
-    /// Commanded speeds of the rotors until now, rad/s.
-    pub(crate) rotor_command_rad_s: &'a [f64; 4],
-    /// When, µs.
-    pub(crate) time_us: u64,
-    /// Of samples like this one.
-    pub(crate) averaging: &'a SampledAveraging,
-}
 
 /// Of an equation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -238,8 +214,8 @@ impl MassAndDrag {
         if !configuration.controllers.learning {
             return false;
         }
-        let thrust_m_s2 = thrust_per_mass_m_s2(configuration, sample);
-        if !flies(sample, thrust_m_s2) {
+        let thrust_m_s2 = sample.thrust_per_mass_m_s2(configuration);
+        if !sample.flies(thrust_m_s2) {
             self.interrupt();
             return false;
         }
@@ -277,7 +253,7 @@ impl MassAndDrag {
         let mut shown = self.excitation.observe(&terms, averaging.steady_motion, (along_m_s2, &drag_1_s));
         shown.mass &= !self.fit.is_in_doubt();
         let moves = terms.velocity_m_s.norm() > AT_REST_M_S * terms.filled;
-        let learns = moves && !is_saturated(configuration, sample);
+        let learns = moves && !sample.is_saturated(configuration);
         if learns {
             self.learn(configuration, &terms, &shown, (&noise, interval_s, averaging));
         }
@@ -308,8 +284,7 @@ impl MassAndDrag {
             + SURPRISE_DEVIATIONS * noise_m_s2
             + self.swing_along_m_s2(self.fit.deviation_m_s2(), noise_m_s2);
         self.surprises *= kept;
-        let known_m_s2 = self.known_m_s2(terms);
-        let along_m_s2 = libm::fabs(change_m_s2.z - known_m_s2);
+        let along_m_s2 = libm::fabs(change_m_s2.z - self.known_m_s2(terms));
         let is_surprised = self.settling_s == 0.0 && along_m_s2 > surprise_m_s2;
         if is_surprised && self.surprises <= MOST_SURPRISES {
             let surprise = Surprise {
@@ -482,27 +457,6 @@ fn drag_part(row: &Unknowns) -> Unknowns {
 fn learned_from(shown: &Shown) -> [bool; UNKNOWNS] {
     let [north, east, down] = shown.drag;
     [shown.mass, north, east, down, true, true, true]
-}
-
-/// Thrust of the rotors per mass of the airframe, m/s².
-fn thrust_per_mass_m_s2(configuration: &Configuration, sample: &FlightSample<'_>) -> f64 {
-    let airframe = &configuration.airframe;
-    wrench_of_rotors(airframe, sample.rotor_speed_rad_s).thrust_n / airframe.mass_kg
-}
-
-/// Whether an instant belongs to a flight that shows a mass: clear of the ground, and not in free fall.
-fn flies(sample: &FlightSample<'_>, thrust_m_s2: f64) -> bool {
-    sample.is_clear && thrust_m_s2 > LEAST_THRUST_SHARE * GRAVITY_M_S2
-}
-
-/// Whether a rotor is commanded to the upper end of its range, where it may lack the power to do as it is told. As slowly as it can turn,
-/// it does.
-fn is_saturated(configuration: &Configuration, sample: &FlightSample<'_>) -> bool {
-    let airframe = &configuration.airframe;
-    let (slowest, fastest) = (airframe.rotor_speed_min_rad_s, airframe.rotor_speed_max_rad_s);
-    let margin = SATURATED_SHARE * (fastest - slowest);
-    let is_free = |speed: &f64| *speed < fastest - margin;
-    !sample.rotor_command_rad_s.iter().all(is_free)
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ pub(crate) mod averaging;
 pub(crate) mod bounded_estimate;
 pub(crate) mod coherence;
 pub(crate) mod excitation;
+pub(crate) mod flight_sample;
 pub(crate) mod gust_memory;
 pub(crate) mod mass_and_drag;
 pub(crate) mod motion_equation;

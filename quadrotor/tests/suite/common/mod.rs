@@ -6,7 +6,14 @@ pub mod physics;
 pub mod trajectory;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use quadrotor::{Configuration, InputSignal, Inputs, Outputs, PositionReference, Sensors, Simulation};
+use quadrotor::{
+    Configuration, ControlLoop, ControlSignal, ControllerKind, InputSignal, Inputs, Measurement, Outputs,
+    PlantState, PositionReference, Sensors, Simulation,
+};
+
+/// The controllers that are compared.
+pub const KINDS: [ControllerKind; 3] =
+    [ControllerKind::Lmpc, ControllerKind::StateSpaceMpc, ControllerKind::Dlqr];
 
 /// Observation interval of the flights, µs.
 pub const STEP_US: u64 = 10_000;
@@ -23,6 +30,14 @@ pub fn goal(position_m: [f64; 3], yaw_rad: f64) -> Inputs {
 pub fn unshaped() -> Configuration {
     let mut configuration = Configuration::default();
     configuration.reference.shaping = false;
+    configuration
+}
+
+/// The same by a controller of a kind, with the whole state or with outputs alone.
+pub fn unshaped_by(kind: ControllerKind, output_feedback: bool) -> Configuration {
+    let mut configuration = unshaped();
+    configuration.controllers.kind = kind;
+    configuration.sensors.output_feedback = output_feedback;
     configuration
 }
 
@@ -80,6 +95,28 @@ pub fn fly(
         see(&simulation.outputs());
     }
     simulation
+}
+
+/// What exact sensors say of a plant.
+pub fn exact(state: &PlantState) -> Measurement {
+    Measurement { motion: state.body, rotor_speed_rad_s: state.rotor_speed_rad_s }
+}
+
+/// Flies a plant by a control loop that is only told what is measured of it. Each millisecond, `step` takes a time, µs, the plant and
+/// rotor commands, rad/s, to the plant a millisecond later.
+pub fn fly_plant(
+    configuration: &Configuration,
+    (mut state, inputs): (PlantState, &impl ControlSignal),
+    measured: impl Fn(&PlantState) -> Measurement,
+    duration_s: f64,
+    mut step: impl FnMut(u64, &PlantState, [f64; 4]) -> PlantState,
+) -> (PlantState, ControlLoop) {
+    let mut control = ControlLoop::new(configuration, &inputs.at(0), &mut measured(&state), 0).unwrap();
+    for time_us in (0..(duration_s * 1e6) as u64).step_by(1_000) {
+        let command_rad_s = control.advance_to(time_us, inputs, &mut measured(&state)).unwrap();
+        state = step(time_us, &state, command_rad_s);
+    }
+    (state, control)
 }
 
 /// How far from the origin a flight of `duration_s` gets, m.

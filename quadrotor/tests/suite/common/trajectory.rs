@@ -24,6 +24,16 @@ impl Trajectory {
         Self { amplitude_m: [4.0, 4.0, 0.0], rate_rad_s: rates, phase_rad: [FRAC_PI_2, 0.0, 0.0] }
     }
 
+    /// A circle of another size.
+    pub fn circle_of(radius_m: f64, rate_rad_s: f64) -> Self {
+        Self { amplitude_m: [radius_m, radius_m, 0.0], ..Self::circle(rate_rad_s) }
+    }
+
+    /// A figure-eight of another size.
+    pub fn figure_eight_of(size_m: f64, rate_rad_s: f64) -> Self {
+        Self { amplitude_m: [size_m, size_m / 2.0, 0.0], ..Self::figure_eight(rate_rad_s) }
+    }
+
     /// An upright figure-eight.
     pub fn upright(size_m: f64, rate_rad_s: f64) -> Self {
         let rates = [rate_rad_s, 0.0, 2.0 * rate_rad_s];

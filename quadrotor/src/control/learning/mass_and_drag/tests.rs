@@ -8,8 +8,9 @@ use std::sync::LazyLock;
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
-use super::{FlightSample, MassAndDrag};
+use super::MassAndDrag;
 use crate::control::learning::averaging::SampledAveraging;
+use crate::control::learning::flight_sample::FlightSample;
 use crate::control::learning::motion_equation::MeasuredMotion;
 use crate::{Configuration, GRAVITY_M_S2};
 
