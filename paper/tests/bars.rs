@@ -189,7 +189,8 @@ fn a_path_far_beyond_the_limits_is_no_worse_than_hovering() {
         };
         let results = flown(plan, &[Flyer::LaguerreMpc]).results;
         let away_cm = find(&results, Flyer::LaguerreMpc, "RMS distance").value.unwrap();
-        assert!(away_cm < 100.0 * hovering_m, "{}: {away_cm} cm of {hovering_m} m", plan.name);
+        // A way that is narrowed to nearly nothing is up to 1.07 of that off, by the filter that finds its middle, and more while it begins.
+        assert!(away_cm < 112.0 * hovering_m, "{}: {away_cm} cm of {hovering_m} m", plan.name);
         flights += 1;
     }
     assert_eq!(flights, 3 * 16);
@@ -222,5 +223,24 @@ fn wide_limits_lose_no_path_that_the_regulator_keeps() {
             rms(track.last(20.0), |moment| moment.error_m().norm())
         });
         assert!(ours_m < 1.15 * regulated_m + 0.005, "{}: {ours_m} m, regulator {regulated_m} m", plan.name);
+    }
+}
+
+/// Small upright figure-eights far beyond the limits are noticed before they turn the vehicle over: some had led it 25 to 38 m away.
+#[test]
+fn small_and_fast_swings_lead_nobody_far_away() {
+    for (size_m, rate_rad_s) in [(0.45, 5.0), (0.5, 4.37), (0.522, 4.2), (0.55, 4.6), (0.6, 4.37)] {
+        let path = Path { shape: Shape::UprightEight, size_m, rate_rad_s };
+        let mut configuration = Configuration::default();
+        configuration.reference.shaping = false;
+        let limits = &mut configuration.limits;
+        (limits.tilt_rad, limits.speed_horizontal_m_s) = (0.6, 20.0);
+        configuration.initial.position_m = path.derivative(0.0, 0).into();
+        let of = plan("figure-eight of 6 m at 0.7 rad/s");
+        let plan =
+            Plan { configuration, demand: Demand::Path(path), name: format!("{path:?}"), ..of.clone() };
+        let track = fly(&plan, Flyer::LaguerreMpc).unwrap();
+        let farthest_m = track.moments.iter().map(|moment| moment.error_m().norm()).fold(0.0, f64::max);
+        assert!(farthest_m < 4.0, "{path:?}: {farthest_m} m");
     }
 }

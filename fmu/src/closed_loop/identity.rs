@@ -9,6 +9,6 @@ pub(super) const IDENTITY: Identity = Identity {
     model_identifier: "LmpcQuadrotor",
     description: "Quadrotor under a cascade of Laguerre model predictive controllers \
         (Chipofya, Lee and Chong 2015), flying from the origin to 5 m north, 5 m east, 10 m up",
-    saved_state: SavedStateFormat { magic: *b"LMPCQRST", version: 16 },
+    saved_state: SavedStateFormat { magic: *b"LMPCQRST", version: 17 },
     ..PROJECT
 };

@@ -11,6 +11,6 @@ pub(super) const IDENTITY: Identity = Identity {
         the measured motion to rotor commands, sampled at their own exact instants",
     // The attitude controller's sample time: every sample is a communication point.
     default_experiment: Experiment { stop_time_s: 10.0, step_size_s: 0.01 },
-    saved_state: SavedStateFormat { magic: *b"LMPCCTRL", version: 10 },
+    saved_state: SavedStateFormat { magic: *b"LMPCCTRL", version: 11 },
     ..PROJECT
 };

@@ -106,8 +106,15 @@ pub fn laguerre(
     let limits: Vec<SignalLimit> = match placing {
         None => axis.linear.limits.clone(),
         Some(samples) => {
-            let placed = |limit: &SignalLimit| SignalLimit { samples: samples.to_vec(), ..limit.clone() };
-            axis.linear.limits.iter().map(placed).collect()
+            let limits = &axis.linear.limits;
+            let same =
+                |one: &SignalLimit, other: &SignalLimit| one.state == other.state && one.input == other.input;
+            // Of the limits that one signal has at different samples, the last is enough everywhere.
+            let placed = |(place, limit): (usize, &SignalLimit)| {
+                let is_last = !limits[place + 1..].iter().any(|later| same(limit, later));
+                SignalLimit { samples: if is_last { samples.to_vec() } else { Vec::new() }, ..limit.clone() }
+            };
+            limits.iter().enumerate().map(placed).collect()
         }
     };
     if terms <= FEW {

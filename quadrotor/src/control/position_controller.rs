@@ -335,7 +335,7 @@ fn foreseen<'a>(
         (state, turn.vector(&(then.thrust - reference.thrust)))
     });
     let beside: [_; FADED] = core::array::from_fn(|place| asked(ASKED[place]));
-    let is_streamed = beside.iter().any(Option::is_some);
+    let is_streamed = beside.iter().any(Option::is_some) && !reference.is_narrow;
     let all = ASKED.into_iter().map(ahead).chain(beside.into_iter().flatten()).chain([*reference]);
     let asked = Asked {
         is_streamed,

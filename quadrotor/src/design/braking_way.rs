@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, Vector2};
 
 use crate::Limits;
 use crate::design::limited_samples::in_time;
-use crate::design::position_limits::{AXIS_STATES, POSITION_BOUNDS, POSITION_STATES};
+use crate::design::position_limits::{AXIS_STATES, POSITION_BOUNDS, POSITION_STATES, UNBOUNDED};
 
 /// One over the times, 1/s, that braking takes where each tangent touches: shorter braking is within sight of a plan.
 const SLOPES_1_S: [f64; 3] = [0.5, 0.25, 0.125];
@@ -22,8 +22,6 @@ const FIRM_M_S: f64 = 8.0;
 const PLANNED: f64 = 0.9;
 /// The least of it that is counted on against what pushes.
 const LEAST: f64 = 0.1;
-/// What stands for no bound, m/s.
-const UNBOUNDED_M_S: f64 = 1e9;
 
 /// Limited signals of [`braking_limits`] at most: two horizontal ones for each slope and sample.
 pub(crate) const BRAKING_SIGNALS: usize = 2 * SLOPES_1_S.len() * SAMPLES.len();
@@ -103,7 +101,7 @@ impl BrakingWay {
     /// Values of [`braking_limits`]; without a way, for no goal at rest, nothing is limited.
     fn bounds(way: Option<&Self>) -> [f64; BRAKING_BOUNDS] {
         core::array::from_fn(|bound| {
-            way.map_or(UNBOUNDED_M_S, |way| way.bound(SLOPES_1_S[bound / DIRECTIONS], bound % DIRECTIONS))
+            way.map_or(UNBOUNDED, |way| way.bound(SLOPES_1_S[bound / DIRECTIONS], bound % DIRECTIONS))
         })
     }
 
@@ -112,7 +110,7 @@ impl BrakingWay {
         let towards = [Vector2::x(), Vector2::y(), -Vector2::x(), -Vector2::y()][direction];
         let share = 1.0 - slope_1_s * self.delay_s;
         if towards.dot(&self.error_m) >= 0.0 || share < 0.0 {
-            return UNBOUNDED_M_S;
+            return UNBOUNDED;
         }
         let held_m_s2 = self.thrust_m_s2 * PLANNED - towards.dot(&self.disturbance_m_s2);
         let braking_m_s2 = held_m_s2.max(self.thrust_m_s2 * LEAST);
@@ -124,9 +122,10 @@ impl BrakingWay {
 mod tests {
     use nalgebra::{DVector, Vector2};
 
-    use super::{BRAKING_BOUNDS, BrakingWay, UNBOUNDED_M_S, braking_limits, swing_s};
+    use super::{BRAKING_BOUNDS, BrakingWay, braking_limits, swing_s};
     use crate::Limits;
     use crate::design::limited_samples::TRANSLATION_SAMPLE_S;
+    use crate::design::position_limits::UNBOUNDED;
     use crate::design::position_limits::{AXIS_STATES, POSITION_STATES};
 
     fn way(delay_s: f64) -> BrakingWay {
@@ -172,9 +171,9 @@ mod tests {
     /// Away from the goal and across nothing is limited, nor is anything without a goal.
     #[test]
     fn only_the_way_to_the_goal_is_limited() {
-        assert!(BrakingWay::bounds(None).iter().all(|bound| *bound == UNBOUNDED_M_S));
+        assert!(BrakingWay::bounds(None).iter().all(|bound| *bound == UNBOUNDED));
         let bounds = BrakingWay::bounds(Some(&way(0.0)));
-        let limited = (0..BRAKING_BOUNDS).filter(|at| bounds[*at] < UNBOUNDED_M_S);
+        let limited = (0..BRAKING_BOUNDS).filter(|at| bounds[*at] < UNBOUNDED);
         assert!(limited.eq([0, 4, 8]));
     }
 

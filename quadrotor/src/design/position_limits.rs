@@ -15,7 +15,7 @@ const SIDES: usize = 24;
 /// Sides of the polygons for the rate and the acceleration of the tilt, which need not be finer: 8 %.
 const COARSE_SIDES: usize = 8;
 /// Bounds, one per side.
-pub(crate) const POSITION_BOUNDS: usize = 3 * SIDES + 2 * COARSE_SIDES;
+pub(crate) const POSITION_BOUNDS: usize = 3 * SIDES + 4 * COARSE_SIDES;
 
 /// Limited signals of [`position_limits`] at most: two horizontal ones of each limit at each of its samples.
 const LIMITED_SIGNALS: usize =
@@ -61,12 +61,14 @@ const CATCHING_UP_WITH_BENT: f64 = 0.2;
 /// How much more jerk and snap than a reference asks for the feedback may use, as a share of their limits. A reference that turns near them
 /// does so all the way round: a plan of a few functions of time, kept to them at each sample, would never come back to its way.
 const TURNING_BACK: f64 = 0.5;
-/// The same of the jerk of a reference that is followed whole: with more, a way that is braked for lowered limits is overshot.
-const STREAMED_BACK: f64 = 0.25;
+/// How much more jerk than its limit is planned with before the attitude loop has answered, as a share of it: see [`first_answered`].
+const BEFORE_AN_ANSWER: f64 = 0.1;
 /// What rounding makes of a reference at the speed limit.
 const ROUNDING: f64 = 1.0 + 1e-6;
 /// With how much snap per jerk the attitude loop answers at most when the jerk of the reference jumps, 1/s.
 const ANSWER_1_S: f64 = 50.0;
+/// A bound that no plan meets.
+pub(crate) const UNBOUNDED: f64 = 1e9;
 /// Violations that cost alike: the commanded acceleration, m/s², the angular acceleration, rad/s², and the rate of the tilt, rad/s, and the
 /// speed, m/s. The tilt is the one to keep.
 const FIRM_M_S2: f64 = 0.5;
@@ -80,12 +82,21 @@ pub(crate) const AXIS_STATES: usize = 6;
 pub(crate) const POSITION_STATES: usize = 2 * AXIS_STATES;
 
 /// The commanded acceleration, and the speed, jerk and snap that follow from it, in all directions alike. They stand for tilt, its
-/// rate and its angular acceleration. The speed is limited from a sample on.
-pub(crate) fn position_limits(sample_time_s: f64, first_moving: usize) -> [SignalLimit; 5] {
+/// rate and its angular acceleration. The speed is limited from a sample on; jerk and snap before the attitude loop has answered have
+/// limits of their own.
+pub(crate) fn position_limits(
+    sample_time_s: f64,
+    (first_answered, first_moving): (usize, usize),
+) -> [SignalLimit; 7] {
     let of_states = |derivative: usize, sides: usize, samples: Vec<usize>| {
         let limited = [derivative, AXIS_STATES + derivative];
         SignalLimit::of_states(POSITION_STATES, 2, &limited, SignalLimit::polygon(sides), samples)
     };
+    let answered = |samples: &[usize]| -> (Vec<usize>, Vec<usize>) {
+        in_time(samples, sample_time_s).into_iter().partition(|sample| *sample < first_answered)
+    };
+    let (turning_before, turning) = answered(TURNING);
+    let (leaning_before, leaning) = answered(LEANING);
     let of_inputs = |samples: &[usize]| {
         let samples = in_time(samples, sample_time_s);
         SignalLimit::of_inputs(POSITION_STATES, 2, SignalLimit::polygon(SIDES), samples)
@@ -94,12 +105,20 @@ pub(crate) fn position_limits(sample_time_s: f64, first_moving: usize) -> [Signa
     [
         of_inputs(PRESENT_TILT),
         of_inputs(TILT),
-        of_states(4, COARSE_SIDES, in_time(TURNING, sample_time_s))
-            .giving_way_by(GRAVITY_M_S2 * TURNING_RAD_S2),
-        of_states(3, COARSE_SIDES, in_time(LEANING, sample_time_s))
-            .giving_way_by(GRAVITY_M_S2 * LEANING_RAD_S),
+        of_states(4, COARSE_SIDES, turning_before).giving_way_by(GRAVITY_M_S2 * TURNING_RAD_S2),
+        of_states(4, COARSE_SIDES, turning).giving_way_by(GRAVITY_M_S2 * TURNING_RAD_S2),
+        of_states(3, COARSE_SIDES, leaning_before).giving_way_by(GRAVITY_M_S2 * LEANING_RAD_S),
+        of_states(3, COARSE_SIDES, leaning).giving_way_by(GRAVITY_M_S2 * LEANING_RAD_S),
         of_states(1, SIDES, moving(first_moving, sample_time_s)).giving_way_by(SPEED_M_S),
     ]
+}
+
+/// The first sample at which an attitude loop that lags behind by so much, s, has answered to a command of now.
+///
+/// Jerk and snap before that are hardly what a plan decides: one of a few functions of time that had to keep their limits there would be a
+/// feedback with a gain of many times its own. Beside a reference that nobody foresees it would answer a turn by its opposite.
+pub(crate) fn first_answered(attitude_delay_s: f64, sample_time_s: f64) -> usize {
+    libm::round(attitude_delay_s / sample_time_s) as usize
 }
 
 /// The first sample at which a plan of a controller limits its speed, over an attitude loop that lags behind by so much, s.
@@ -150,7 +169,7 @@ pub(crate) struct Asked {
     pub(crate) jerk_m_s3: f64,
     /// Snap, m/s⁴.
     pub(crate) snap_m_s4: f64,
-    /// Whether nobody has told how it goes on: what is foreseen of it is no plan that keeps limits.
+    /// Whether nobody has told how it goes on, and it is followed whole: what is foreseen of it is no plan that keeps limits.
     pub(crate) is_streamed: bool,
     /// Whether limits bend it.
     pub(crate) is_bent: bool,
@@ -174,13 +193,18 @@ pub(crate) fn position_bounds(
     let [leaning, turning] = if asked.is_bent {
         // Beside a large lean, weak rotors have no torque to spare.
         [with_room(most_m_s3, jerk_m_s3, TURNING_BACK), with_faster(most_m_s4, snap_m_s4)]
-    } else if asked.is_streamed {
-        [with_room(most_m_s3, jerk_m_s3, STREAMED_BACK), with_room(most_m_s4, snap_m_s4, TURNING_BACK)]
     } else {
         [with_faster(most_m_s3, jerk_m_s3), with_faster(most_m_s4, snap_m_s4)]
     };
     let leaning = leaning.max(under_way.jerk_m_s3);
     let turning = turning.max(under_way.snap_m_s4) + ANSWER_1_S * under_way.jump_m_s3;
+    let [leaning_before, turning_before] = if asked.is_bent {
+        [leaning, turning]
+    } else if asked.is_streamed {
+        [UNBOUNDED; 2]
+    } else {
+        [(1.0 + BEFORE_AN_ANSWER) * leaning, turning]
+    };
     let limit_m_s = limits.speed_horizontal_m_s;
     let speed = if asked.is_bent {
         limit_m_s.max(asked.speed_m_s + by_share_m_s(CATCHING_UP_WITH_BENT, limit_m_s))
@@ -190,8 +214,10 @@ pub(crate) fn position_bounds(
     core::array::from_fn(|bound| match bound {
         ..SIDES => present_m_s2,
         _ if bound < 2 * SIDES => lasting_m_s2,
-        _ if bound < 2 * SIDES + COARSE_SIDES => turning,
-        _ if bound < 2 * SIDES + 2 * COARSE_SIDES => leaning,
+        _ if bound < 2 * SIDES + COARSE_SIDES => turning_before,
+        _ if bound < 2 * SIDES + 2 * COARSE_SIDES => turning,
+        _ if bound < 2 * SIDES + 3 * COARSE_SIDES => leaning_before,
+        _ if bound < 2 * SIDES + 4 * COARSE_SIDES => leaning,
         _ => PLANNED_SPEED * speed,
     })
 }
@@ -281,29 +307,54 @@ mod tests {
     use nalgebra::Vector2;
 
     use super::{
-        Asked, COARSE_SIDES, POSITION_BOUNDS, SIDES, TurnUnderWay, first_moving, horizon_m, in_sight, moving,
-        planned_horizon_m, position_bounds, position_limits,
+        Asked, COARSE_SIDES, POSITION_BOUNDS, SIDES, TurnUnderWay, UNBOUNDED, first_answered, first_moving,
+        horizon_m, in_sight, moving, planned_horizon_m, position_bounds, position_limits,
     };
     use crate::design::limited_samples::TRANSLATION_SAMPLE_S;
     use crate::{ControllerKind, GRAVITY_M_S2, Limits};
 
+    /// Where the bounds of snap and jerk begin, from when the attitude loop has answered on.
+    const TURNING_AT: usize = 2 * SIDES + COARSE_SIDES;
+    const LEANING_AT: usize = 2 * SIDES + 3 * COARSE_SIDES;
+
     #[test]
     fn each_side_has_its_bound() {
         let sides: usize =
-            position_limits(TRANSLATION_SAMPLE_S, 6).iter().map(|limit| limit.directions.nrows()).sum();
+            position_limits(TRANSLATION_SAMPLE_S, (4, 6)).iter().map(|limit| limit.directions.nrows()).sum();
         assert_eq!(sides, POSITION_BOUNDS);
         let limits = Limits::default();
-        let bounds = position_bounds(
-            &limits,
-            (5.0, 4.0),
-            &Asked { speed_m_s: 3.0, ..Asked::default() },
-            TurnUnderWay::default(),
-        );
-        assert!(bounds[..SIDES].iter().all(|bound| *bound == 5.0));
-        assert!(bounds[SIDES..2 * SIDES].iter().all(|bound| *bound == 4.0));
-        assert_eq!(bounds[2 * SIDES], GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
-        assert_eq!(bounds[2 * SIDES + COARSE_SIDES], GRAVITY_M_S2 * limits.tilt_rate_rad_s);
-        assert_eq!(bounds[POSITION_BOUNDS - 1], 0.995 * 8.0);
+        let bounds = |asked: Asked| position_bounds(&limits, (5.0, 4.0), &asked, TurnUnderWay::default());
+        let known = bounds(Asked { speed_m_s: 3.0, ..Asked::default() });
+        assert!(known[..SIDES].iter().all(|bound| *bound == 5.0));
+        assert!(known[SIDES..2 * SIDES].iter().all(|bound| *bound == 4.0));
+        // Before the attitude loop has answered, and from then on.
+        let (before, leaning_before) = (TURNING_AT - COARSE_SIDES, LEANING_AT - COARSE_SIDES);
+        let (rate, acceleration) = (limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2);
+        assert_eq!([known[before], known[TURNING_AT]], [GRAVITY_M_S2 * acceleration; 2]);
+        assert_eq!(known[leaning_before], 1.1 * (GRAVITY_M_S2 * rate));
+        assert_eq!(known[LEANING_AT], GRAVITY_M_S2 * rate);
+        assert_eq!(known[POSITION_BOUNDS - 1], 0.995 * 8.0);
+        let streamed = bounds(Asked { speed_m_s: 3.0, is_streamed: true, ..Asked::default() });
+        for (bound, (streamed, known)) in streamed.iter().zip(&known).enumerate() {
+            let before_an_answer =
+                (before..TURNING_AT).contains(&bound) || (leaning_before..LEANING_AT).contains(&bound);
+            assert_eq!(*streamed, if before_an_answer { UNBOUNDED } else { *known });
+        }
+    }
+
+    /// The delays of the heavy preset, the default and the Crazyflie.
+    #[test]
+    fn jerk_and_snap_are_split_where_the_attitude_has_answered() {
+        for (delay_s, sample) in [(0.143, 3), (0.219, 4), (0.275, 6)] {
+            assert_eq!(first_answered(delay_s, TRANSLATION_SAMPLE_S), sample);
+            let limits = position_limits(TRANSLATION_SAMPLE_S, (sample, 6));
+            for before in [&limits[2], &limits[4]] {
+                assert!(before.samples.iter().all(|limited| *limited < sample), "{:?}", before.samples);
+            }
+            for from_then_on in [&limits[3], &limits[5]] {
+                assert!(from_then_on.samples.iter().all(|limited| *limited >= sample));
+            }
+        }
     }
 
     #[test]
@@ -331,7 +382,7 @@ mod tests {
         for (share, expected) in [(0.5, 1.0), (1.0, 1.0), (3.0, 3.0)] {
             let under_way = TurnUnderWay { snap_m_s4: share * turning, ..TurnUnderWay::default() };
             assert_eq!(
-                position_bounds(&limits, (5.0, 4.0), &Asked::default(), under_way)[2 * SIDES],
+                position_bounds(&limits, (5.0, 4.0), &Asked::default(), under_way)[TURNING_AT],
                 expected * turning
             );
         }
@@ -345,11 +396,12 @@ mod tests {
         for (share, expected) in [(0.5, 1.0), (1.0, 1.0), (3.0, 3.0)] {
             let under_way = TurnUnderWay { jerk_m_s3: share * leaning, ..TurnUnderWay::default() };
             let bounds = position_bounds(&limits, (5.0, 4.0), &Asked::default(), under_way);
-            assert_eq!(bounds[2 * SIDES + COARSE_SIDES], expected * leaning);
+            assert_eq!(bounds[LEANING_AT], expected * leaning);
         }
     }
 
-    /// A reference that turns near the limits, or faster, leaves feedback room; what is slower changes nothing.
+    /// A reference that limits bend leaves feedback room where it turns near them or faster, any other that is faster; what is slower changes
+    /// nothing.
     #[test]
     fn a_fast_turn_moves_the_limits_of_the_tilt() {
         let limits = Limits::default();
@@ -357,20 +409,18 @@ mod tests {
             [limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2].map(|limit| GRAVITY_M_S2 * limit);
         for (share, most) in [(0.4, 1.0), (0.9, 1.4), (1.5, 2.0)] {
             let (jerk_m_s3, snap_m_s4) = (share * leaning, share * turning);
-            let asked = Asked { jerk_m_s3, snap_m_s4, is_streamed: true, ..Asked::default() };
-            let bounds = position_bounds(&limits, (5.0, 4.0), &asked, TurnUnderWay::default());
-            assert!((bounds[2 * SIDES] / turning - most).abs() < 1e-12);
-            let leant = f64::max(1.0, share + 0.25);
-            assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - leant).abs() < 1e-12);
-            let bent = Asked { is_bent: true, ..asked };
-            let bounds = position_bounds(&limits, (5.0, 4.0), &bent, TurnUnderWay::default());
+            let bounds = |asked: Asked| {
+                let asked = Asked { jerk_m_s3, snap_m_s4, ..asked };
+                let bounds = position_bounds(&limits, (5.0, 4.0), &asked, TurnUnderWay::default());
+                [bounds[LEANING_AT] / leaning, bounds[TURNING_AT] / turning]
+            };
+            let near = |bounds: [f64; 2], expected: [f64; 2]| {
+                bounds.iter().zip(expected).all(|(bound, expected)| (bound - expected).abs() < 1e-12)
+            };
             let turned = if share > 1.0 { share + 0.1 } else { 1.0 };
-            assert!((bounds[2 * SIDES] / turning - turned).abs() < 1e-12);
-            assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - most).abs() < 1e-12);
-            let planned = Asked { is_streamed: false, ..asked };
-            let bounds = position_bounds(&limits, (5.0, 4.0), &planned, TurnUnderWay::default());
-            assert!((bounds[2 * SIDES] / turning - turned).abs() < 1e-12);
-            assert!((bounds[2 * SIDES + COARSE_SIDES] / leaning - turned).abs() < 1e-12);
+            assert!(near(bounds(Asked { is_bent: true, ..Asked::default() }), [most, turned]));
+            assert!(near(bounds(Asked { is_streamed: true, ..Asked::default() }), [turned; 2]));
+            assert!(near(bounds(Asked::default()), [turned; 2]));
         }
     }
 
@@ -380,8 +430,8 @@ mod tests {
         let limits = Limits::default();
         let asked = Asked { is_bent: true, is_narrow: true, ..Asked::default() };
         let bounds = position_bounds(&limits, (5.0, 4.0), &asked, TurnUnderWay::default());
-        let turning = bounds[2 * SIDES] / (GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
-        let leaning = bounds[2 * SIDES + COARSE_SIDES] / (GRAVITY_M_S2 * limits.tilt_rate_rad_s);
+        let turning = bounds[TURNING_AT] / (GRAVITY_M_S2 * limits.tilt_acceleration_rad_s2);
+        let leaning = bounds[LEANING_AT] / (GRAVITY_M_S2 * limits.tilt_rate_rad_s);
         assert!((turning - 1.3).abs() < 1e-12 && (leaning - 1.3).abs() < 1e-12, "{turning} {leaning}");
     }
 

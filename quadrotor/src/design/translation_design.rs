@@ -12,7 +12,9 @@ use crate::design::capacities::{ALTITUDE_FEW, ALTITUDE_MANY, POSITION_FEW, POSIT
 use crate::design::cascade_design::DesignReport;
 use crate::design::linear_models::{altitude_model, altitude_model_with_lag, double_integrators};
 use crate::design::loop_problem::LoopProblem;
-use crate::design::position_limits::{POSITION_SIGNALS, POSITION_STATES, first_moving, position_limits};
+use crate::design::position_limits::{
+    POSITION_SIGNALS, POSITION_STATES, first_answered, first_moving, position_limits,
+};
 use crate::design::printed_design::printed_design;
 use crate::design::stabilized_law::StabilizedLaw;
 use crate::{Configuration, ConfigurationError, ControllerKind, PredictionModel};
@@ -131,9 +133,12 @@ pub(crate) fn position_problem(
     let settings = &configuration.controllers.position;
     let model = over_attitude(attitude, &configuration.drag_1_s().xy(), settings.sample_time_s())?;
     let bandwidth = [position_bandwidth_rad_s(configuration, Some(attitude)); 2].into();
-    let first_moving =
-        first_moving(configuration.controllers.kind, attitude.delay_s(), settings.sample_time_s());
-    let limits = position_limits(settings.sample_time_s(), first_moving);
+    let (delay_s, sample_time_s) = (attitude.delay_s(), settings.sample_time_s());
+    let firsts = (
+        first_answered(delay_s, sample_time_s),
+        first_moving(configuration.controllers.kind, delay_s, sample_time_s),
+    );
+    let limits = position_limits(sample_time_s, firsts);
     Ok(LoopProblem::new(settings, &bandwidth, limits, SIGHT_M, &model)?
         .planned_about(POSITION_STABILIZING_SHARE))
 }

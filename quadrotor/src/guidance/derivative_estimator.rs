@@ -348,6 +348,27 @@ mod tests {
         }
     }
 
+    /// A quintic from 0 to 3 within a second, beside which its terms of odd degree vanish in the middle: it is no corner there, but known from
+    /// 0.35 s on until it ends.
+    #[test]
+    fn a_quintic_is_known_all_the_way() {
+        for period_us in [10_000, 20_000, 50_000] {
+            let signal = |t: f64| {
+                let s = (t - 1.0).clamp(0.0, 1.0);
+                Vector3::x() * (3.0 * s.powi(3) * (10.0 - 15.0 * s + 6.0 * s * s))
+            };
+            let first = |s: f64| 90.0 * s * s * (1.0 - s).powi(2);
+            let second = |s: f64| 180.0 * s * (1.0 - s) * (1.0 - 2.0 * s);
+            for (t, found) in estimates(signal, period_us).filter(|(t, _)| (1.36..1.99).contains(t)) {
+                let errors = [found.first.x - first(t - 1.0), found.second.x - second(t - 1.0)];
+                assert!(
+                    errors[0].abs() < 0.05 && errors[1].abs() < 0.5,
+                    "{t} each {period_us} µs: {errors:?}"
+                );
+            }
+        }
+    }
+
     /// Set-points that rest and jump, trembling by rounding or not at all, and one that is held: none of it is motion.
     #[test]
     fn jumps_are_not_motion() {

@@ -27,6 +27,10 @@ const VARIANCES: f64 = 4.0;
 /// one before that: a motion may have no derivative of an order at an instant. Sinusoids of up to 2 rad/s, set every 200 ms, do.
 const CONVERGING: usize = 4;
 const DECAY: f64 = 0.2;
+/// Terms that do not fall may be those of a smooth motion, too, at an instant. Behind a corner a polynomial leaves about as much as its
+/// last term adds; so many samples more than it has coefficients, of which it leaves no more than this share of that term, know of none.
+const TELLING: usize = 3;
+const LEFT_OF_LAST: f64 = 0.04;
 
 /// A least-squares polynomial, seen at one instant.
 pub(crate) struct PolynomialFit<const AXES: usize> {
@@ -61,10 +65,15 @@ impl<const AXES: usize> PolynomialFit<AXES> {
         let abscissa = |at_us: u64| at_us.saturating_sub(*first_us) as f64 / 1e6 / half_s - 1.0;
         let (terms, left) = Self::terms(samples, degree, abscissa, abscissa(time_us));
         let terms = terms.get(..=degree).unwrap_or(&terms);
-        let left = left / (samples.len() - 1 - degree) as f64;
+        let beyond = samples.len() - 1 - degree;
+        let fits = beyond >= TELLING && degree > CONVERGING && {
+            let last = terms.last().map_or(0.0, added);
+            libm::sqrt(left) <= LEFT_OF_LAST * last
+        };
+        let left = left / beyond as f64;
 
         let variance = left.max(least_variance);
-        let smooth = is_smooth(terms);
+        let smooth = fits || is_smooth(terms);
         let (mut derivatives, mut gain) = ([SVector::zeros(); ORDERS], 1.0);
         for (k, Term { coefficient, size, there }) in terms.iter().enumerate() {
             let square = coefficient.norm_squared();
@@ -134,9 +143,13 @@ impl<const AXES: usize> PolynomialFit<AXES> {
     }
 }
 
+/// What a term adds to the samples, as the root of its sum of squares.
+fn added<const AXES: usize>(term: &Term<AXES>) -> f64 {
+    libm::sqrt(term.coefficient.norm_squared() * term.size)
+}
+
 /// Whether the terms fall as those of a smooth motion do.
 fn is_smooth<const AXES: usize>(terms: &[Term<AXES>]) -> bool {
-    let added = |term: &Term<AXES>| libm::sqrt(term.coefficient.norm_squared() * term.size);
     terms.windows(3).skip(CONVERGING - 2).all(|three| match three {
         [before_that, before, term] => {
             added(term) <= f64::max(DECAY * added(before), DECAY * DECAY * added(before_that))

@@ -35,4 +35,5 @@ mod references;
 mod rotor_loss;
 mod stability;
 mod steps_of_acceleration;
+mod turns_in_streams;
 mod two_rotors_lost;

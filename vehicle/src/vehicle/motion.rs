@@ -88,7 +88,6 @@ impl Motion {
             let AxisTarget::Track { position_m: p, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j } =
                 *target
             else {
-                self.state.jerk_m_s3[axis] = 0.0;
                 continue;
             };
             self.state.position_m[axis] = p + (v + (a / 2.0 + j / 6.0 * t) * t) * t;
@@ -105,8 +104,11 @@ impl Motion {
 
     /// Moves on by `dt_s`.
     pub fn step(&mut self, limits: &Limits, dt_s: f64) {
+        let before_m_s2 = self.state.acceleration_m_s2;
         self.accelerate_horizontally(limits, dt_s);
         self.accelerate_vertically(limits, dt_s);
+        // Told, it need not be found from a few accelerations, which change it at once where they reach what is wanted.
+        self.state.jerk_m_s3 = (self.state.acceleration_m_s2 - before_m_s2) / dt_s;
         for axis in 0..3 {
             if matches!(self.set_point.axes[axis], AxisTarget::Track { .. }) {
                 continue;
@@ -202,6 +204,7 @@ impl Motion {
             self.state.position_m[axis] = goal;
             self.state.velocity_m_s[axis] = 0.0;
             self.state.acceleration_m_s2[axis] = 0.0;
+            self.state.jerk_m_s3[axis] = 0.0;
         }
     }
 
@@ -211,6 +214,7 @@ impl Motion {
         if is_near && self.state.acceleration_m_s2[axis].abs() < REACHED_M_S2 {
             self.state.velocity_m_s[axis] = wanted;
             self.state.acceleration_m_s2[axis] = 0.0;
+            self.state.jerk_m_s3[axis] = 0.0;
         }
     }
 
