@@ -138,12 +138,12 @@ impl Cascade {
     }
 
     /// What is followed at a time in place of a reference that nobody can follow, or that no plan of the position controller reaches;
-    /// `None` of another one.
+    /// `None` of another one. `is_told` is whether all of its derivatives are told, instead of being found.
     pub(crate) fn follow(
         &mut self,
         configuration: &Configuration,
         design: &CascadeDesign,
-        (reference, seen): (&PositionReference, &Observation),
+        (reference, is_told, seen): (&PositionReference, bool, &Observation),
         time_us: u64,
     ) -> Option<PositionReference> {
         if design.position.law.regulator().is_none() {
@@ -157,8 +157,8 @@ impl Cascade {
         } else {
             self.turned = TurnedWay::default();
         }
-        let narrowed =
-            self.narrowed.follow(configuration, design.attitude.available_rad_s2, reference, time_us);
+        let available_rad_s2 = design.attitude.available_rad_s2;
+        let narrowed = self.narrowed.follow(configuration, available_rad_s2, (reference, is_told), time_us);
         let way = narrowed.as_ref().unwrap_or(reference);
         self.followed.follow(configuration, (way, &seen.body), time_us).or(narrowed)
     }

@@ -19,6 +19,7 @@ use crate::control::observation::Observation;
 use crate::control::rate_bias::RateBias;
 use crate::control::rotor_command::RotorCommand;
 use crate::design::loop_design::LoopDesign;
+use crate::guidance::found_derivatives::gives_all;
 use crate::guidance::reference_guidance::Guidance;
 use crate::{
     Activity, CascadeDesign, Configuration, ConfigurationError, ControlError, Controllers, Measurement,
@@ -412,7 +413,8 @@ impl ControlState {
         }
         let configuration = &self.limits.in_force(learned);
         let given = self.guidance.reference(time_us);
-        let followed = self.cascade.follow(configuration, cascade, (&given, seen), time_us);
+        let is_told = self.guidance.is_foretold() || gives_all(reference);
+        let followed = self.cascade.follow(configuration, cascade, (&given, is_told, seen), time_us);
         let now = followed.unwrap_or(given);
         let foretold = followed.and_then(|_| self.cascade.foretold_way());
         let later_s = |then_us: u64| then_us.saturating_sub(time_us) as f64 / 1e6;

@@ -12,7 +12,7 @@ const NARROW: f64 = 0.9;
 const NOTICED_1_S: f64 = 1.0;
 const FORGOTTEN_1_S: f64 = 0.15;
 /// More than what counts by this share of it is far beyond, and how much faster that is noticed, by the square of what it is more. Noticed as
-/// slowly as the rest, a small and fast swing would turn the vehicle over first.
+/// slowly as the rest, a small and fast swing would turn the vehicle over first. Derivatives that are found have noise, which is no way.
 const FAR: f64 = 0.3;
 const FASTER: f64 = 100.0;
 /// The fastest that it is noticed, 1/s.
@@ -63,12 +63,12 @@ impl NarrowedWay {
     }
 
     /// Goes on to a reference at a time, µs, with an angular acceleration of roll and pitch that the rotors have in hover, rad/s². What
-    /// is followed then, unless it is the reference itself.
+    /// is followed then, unless it is the reference itself. Beside the reference it is told whether its derivatives are, or only found.
     pub(crate) fn follow(
         &mut self,
         configuration: &Configuration,
         available_rad_s2: f64,
-        reference: &PositionReference,
+        (reference, is_told): (&PositionReference, bool),
         time_us: u64,
     ) -> Option<PositionReference> {
         if reference.is_at_rest() {
@@ -80,7 +80,7 @@ impl NarrowedWay {
         let mut narrowing = match self.narrowing {
             None if asked.max() > 1.0 => Narrowing::none(time_us),
             None => return None,
-            Some(narrowing) => narrowing.after(asked, time_us),
+            Some(narrowing) => narrowing.after((asked, is_told), time_us),
         };
         narrowing.drive(reference);
         let way = narrowing.beside(reference);
@@ -111,10 +111,14 @@ impl Narrowing {
     }
 
     /// Later, when so much is asked for.
-    fn after(&self, asked: Vector2<f64>, time_us: u64) -> Self {
+    fn after(&self, (asked, is_told): (Vector2<f64>, bool), time_us: u64) -> Self {
         let t = (time_us.saturating_sub(self.time_us) as f64 / 1e6).min(STEP_S);
         let asked = self.asked.zip_map(&asked, |before, now| {
-            let rate_1_s = if now > before { noticed_1_s(now / before) } else { FORGOTTEN_1_S };
+            let rate_1_s = match now > before {
+                true if is_told => noticed_1_s(now / before),
+                true => NOTICED_1_S,
+                false => FORGOTTEN_1_S,
+            };
             before + (now - before) * (rate_1_s * t)
         });
         let [share, rate, bend] = self.share;
@@ -212,7 +216,8 @@ mod tests {
         (0..steps)
             .map(|step| {
                 let reference = circle(rate_rad_s, step * STEP_US);
-                way.follow(configuration, AVAILABLE_RAD_S2, &reference, step * STEP_US).unwrap_or(reference)
+                way.follow(configuration, AVAILABLE_RAD_S2, (&reference, true), step * STEP_US)
+                    .unwrap_or(reference)
             })
             .collect()
     }
@@ -299,8 +304,9 @@ mod tests {
             for step in 0..40_000 {
                 let time_us = step * STEP_US;
                 let reference = bobbing(north_m, (0.1, 6.0), time_us);
-                let followed =
-                    way.follow(&configuration, AVAILABLE_RAD_S2, &reference, time_us).unwrap_or(reference);
+                let followed = way
+                    .follow(&configuration, AVAILABLE_RAD_S2, (&reference, true), time_us)
+                    .unwrap_or(reference);
                 if step >= 20_000 {
                     largest_m_s2 = largest_m_s2.max(followed.acceleration_m_s2.z.abs());
                 }
@@ -323,8 +329,9 @@ mod tests {
         for step in 0..60_000 {
             let time_us = step * STEP_US;
             let reference = bobbing(4.0, (1.0, 4.0), time_us);
-            let followed =
-                way.follow(&configuration, AVAILABLE_RAD_S2, &reference, time_us).unwrap_or(reference);
+            let followed = way
+                .follow(&configuration, AVAILABLE_RAD_S2, (&reference, true), time_us)
+                .unwrap_or(reference);
             if step > 40_000 {
                 aside_m = aside_m.max((followed.position_m - reference.position_m).x.abs());
                 down_m_s2 = down_m_s2.max(followed.acceleration_m_s2.z);
@@ -341,8 +348,13 @@ mod tests {
         let configuration = Configuration::default();
         let mut way = NarrowedWay::default();
         let mut narrowed = |rate_rad_s: f64, step: u64| {
-            way.follow(&configuration, AVAILABLE_RAD_S2, &circle(rate_rad_s, step * STEP_US), step * STEP_US)
-                .is_some()
+            way.follow(
+                &configuration,
+                AVAILABLE_RAD_S2,
+                (&circle(rate_rad_s, step * STEP_US), true),
+                step * STEP_US,
+            )
+            .is_some()
         };
         // 7.7 m/s² of 6
         assert!((0..5_000).all(|step| !narrowed(1.38, step)));
@@ -373,7 +385,7 @@ mod tests {
         for step in 0..60_000 {
             let time_us = step * STEP_US;
             let reference = if step < 10_000 { line(4.0, 3.0, time_us) } else { line(5.0, 1.2, time_us) };
-            match way.follow(&configuration, AVAILABLE_RAD_S2, &reference, time_us) {
+            match way.follow(&configuration, AVAILABLE_RAD_S2, (&reference, true), time_us) {
                 Some(followed) => apart_m_s = (followed.velocity_m_s - reference.velocity_m_s).norm(),
                 None if step > 10_000 && !ended => {
                     assert!(apart_m_s < 0.02, "{step}: {apart_m_s} m/s");
@@ -395,7 +407,7 @@ mod tests {
                 snap_m_s4: Vector3::new(snap_m_s4, 0.0, 0.0),
                 ..circle(1.0, step * STEP_US)
             };
-            way.follow(&configuration, AVAILABLE_RAD_S2, &reference, step * STEP_US)
+            way.follow(&configuration, AVAILABLE_RAD_S2, (&reference, true), step * STEP_US)
                 .map_or(0.0, |followed| (followed.position_m - reference.position_m).norm())
         };
         assert!((0..100).all(|step| narrowed(step, 4.0) == 0.0));
@@ -408,9 +420,14 @@ mod tests {
     fn a_goal_at_rest_is_followed_at_once() {
         let configuration = Configuration::default();
         let mut way = NarrowedWay::default();
-        assert!(way.follow(&configuration, AVAILABLE_RAD_S2, &circle(3.0, 0), 0).is_some());
+        assert!(way.follow(&configuration, AVAILABLE_RAD_S2, (&circle(3.0, 0), true), 0).is_some());
         assert_eq!(
-            way.follow(&configuration, AVAILABLE_RAD_S2, &PositionReference::goal([1.0; 3], 0.0), STEP_US),
+            way.follow(
+                &configuration,
+                AVAILABLE_RAD_S2,
+                (&PositionReference::goal([1.0; 3], 0.0), true),
+                STEP_US
+            ),
             None
         );
         assert_eq!(way, NarrowedWay::default());

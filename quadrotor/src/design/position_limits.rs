@@ -63,6 +63,8 @@ const CATCHING_UP_WITH_BENT: f64 = 0.2;
 const TURNING_BACK: f64 = 0.5;
 /// How much more jerk than its limit is planned with before the attitude loop has answered, as a share of it: see [`first_answered`].
 const BEFORE_AN_ANSWER: f64 = 0.1;
+/// So many times the limits of tilt rate and tilt acceleration are far beyond them.
+const FAR: f64 = 3.0;
 /// What rounding makes of a reference at the speed limit.
 const ROUNDING: f64 = 1.0 + 1e-6;
 /// With how much snap per jerk the attitude loop answers at most when the jerk of the reference jumps, 1/s.
@@ -198,7 +200,9 @@ pub(crate) fn position_bounds(
     };
     let leaning = leaning.max(under_way.jerk_m_s3);
     let turning = turning.max(under_way.snap_m_s4) + ANSWER_1_S * under_way.jump_m_s3;
-    let [leaning_before, turning_before] = if asked.is_bent {
+    // One far beyond the limits is not followed for long: see `NarrowedWay`.
+    let is_far = jerk_m_s3 > FAR * most_m_s3 || snap_m_s4 > FAR * most_m_s4;
+    let [leaning_before, turning_before] = if asked.is_bent || (asked.is_streamed && is_far) {
         [leaning, turning]
     } else if asked.is_streamed {
         [UNBOUNDED; 2]

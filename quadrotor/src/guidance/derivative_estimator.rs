@@ -52,6 +52,8 @@ pub struct DerivativeEstimator<const AXES: usize> {
     noise: SignalNoise,
     /// What the polynomials have missed of the samples that came next.
     missed: LatelyMissed,
+    /// Whether it is the rate of something, whose derivatives count up to the third: an end that comes without notice costs little.
+    is_rate: bool,
 }
 
 /// What a look at a signal finds.
@@ -112,7 +114,13 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
             since_us: 0,
             noise: SignalNoise::default(),
             missed: LatelyMissed::default(),
+            is_rate: false,
         }
+    }
+
+    /// A constant rate.
+    pub(crate) fn of_rate() -> Self {
+        Self { is_rate: true, ..Self::new() }
     }
 
     /// Makes it a constant again.
@@ -188,16 +196,22 @@ impl<const AXES: usize> DerivativeEstimator<AXES> {
 
     /// The polynomial through the recent samples.
     fn recent_fit(&self, time_us: u64) -> Option<PolynomialFit<AXES>> {
-        PolynomialFit::new(self.newest(self.recent()), self.noise.variance(), time_us)
+        PolynomialFit::new(self.newest(self.recent()), (self.noise.variance(), self.is_rate), time_us)
     }
 
-    /// The one through the most samples, up to all, that leaves no more than the noise; or else that through the recent ones.
+    /// The one through the most samples, up to all, that leaves no more than the noise and, of a rate, knows of no corner where those before know of none; or
+    /// else that through the recent ones.
     fn longest_fit(&self, recent: PolynomialFit<AXES>, time_us: u64) -> PolynomialFit<AXES> {
         let (variance, fitted) = (self.noise.variance(), self.recent());
         let mut longest = recent;
         for count in [(fitted + self.count) / 2, self.count].into_iter().filter(|count| *count > fitted) {
-            match PolynomialFit::new(self.newest(count), variance, time_us) {
-                Some(fit) if fit.left <= AS_NOISE * variance => longest = fit,
+            match PolynomialFit::new(self.newest(count), (variance, self.is_rate), time_us) {
+                Some(fit)
+                    if fit.left <= AS_NOISE * variance
+                        && (fit.smooth || !(self.is_rate && longest.smooth)) =>
+                {
+                    longest = fit
+                }
                 _ => break,
             }
         }
@@ -313,7 +327,15 @@ mod tests {
         signal: impl Fn(f64) -> Vector3<f64>,
         period_us: u64,
     ) -> impl Iterator<Item = (f64, Derivatives<3>)> {
-        let mut estimator = DerivativeEstimator::new();
+        estimates_by(DerivativeEstimator::new(), signal, period_us)
+    }
+
+    /// The same by another estimator.
+    fn estimates_by(
+        mut estimator: DerivativeEstimator<3>,
+        signal: impl Fn(f64) -> Vector3<f64>,
+        period_us: u64,
+    ) -> impl Iterator<Item = (f64, Derivatives<3>)> {
         (0..12_000_u64).filter_map(move |millisecond| {
             let time_us = millisecond * 1_000;
             let set_us = time_us / period_us * period_us;
@@ -359,7 +381,8 @@ mod tests {
             };
             let first = |s: f64| 90.0 * s * s * (1.0 - s).powi(2);
             let second = |s: f64| 180.0 * s * (1.0 - s) * (1.0 - 2.0 * s);
-            for (t, found) in estimates(signal, period_us).filter(|(t, _)| (1.36..1.99).contains(t)) {
+            let estimates = estimates_by(DerivativeEstimator::of_rate(), signal, period_us);
+            for (t, found) in estimates.filter(|(t, _)| (1.36..1.99).contains(t)) {
                 let errors = [found.first.x - first(t - 1.0), found.second.x - second(t - 1.0)];
                 assert!(
                     errors[0].abs() < 0.05 && errors[1].abs() < 0.5,

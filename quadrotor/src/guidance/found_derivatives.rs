@@ -165,7 +165,7 @@ fn is_given(derivative: &Vector3<f64>) -> bool {
 }
 
 /// Whether jerk and snap are given with a point.
-fn gives_all(point: &PositionReference) -> bool {
+pub(crate) fn gives_all(point: &PositionReference) -> bool {
     is_given(&point.jerk_m_s3) || is_given(&point.snap_m_s4)
 }
 

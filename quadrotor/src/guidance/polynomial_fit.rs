@@ -31,6 +31,8 @@ const DECAY: f64 = 0.2;
 /// last term adds; so many samples more than it has coefficients, of which it leaves no more than this share of that term, know of none.
 const TELLING: usize = 3;
 const LEFT_OF_LAST: f64 = 0.04;
+/// As long as they reach no further back than this, s: a longer motion that ends is carried on for too long.
+const LONGEST_S: f64 = 0.5;
 
 /// A least-squares polynomial, seen at one instant.
 pub(crate) struct PolynomialFit<const AXES: usize> {
@@ -41,6 +43,8 @@ pub(crate) struct PolynomialFit<const AXES: usize> {
     pub deviation: f64,
     /// Variance of the samples that it leaves.
     pub left: f64,
+    /// Whether it knows of no corner.
+    pub smooth: bool,
 }
 
 /// One polynomial p_k of the basis in a fit.
@@ -57,7 +61,11 @@ struct Term<const AXES: usize> {
 impl<const AXES: usize> PolynomialFit<AXES> {
     /// Of samples, the newest last, with a noise of at least a variance. `None` with fewer than three of them: there must be one more
     /// than the polynomial has coefficients.
-    pub fn new(samples: &[(u64, SVector<f64, AXES>)], least_variance: f64, time_us: u64) -> Option<Self> {
+    pub fn new(
+        samples: &[(u64, SVector<f64, AXES>)],
+        (least_variance, is_rate): (f64, bool),
+        time_us: u64,
+    ) -> Option<Self> {
         let ([(first_us, _), .., (last_us, _)], 3..) = (samples, samples.len()) else { return None };
         let degree = DEGREE.min(samples.len() - 2);
         let half_s = last_us.saturating_sub(*first_us) as f64 / 2e6;
@@ -66,7 +74,7 @@ impl<const AXES: usize> PolynomialFit<AXES> {
         let (terms, left) = Self::terms(samples, degree, abscissa, abscissa(time_us));
         let terms = terms.get(..=degree).unwrap_or(&terms);
         let beyond = samples.len() - 1 - degree;
-        let fits = beyond >= TELLING && degree > CONVERGING && {
+        let fits = is_rate && beyond >= TELLING && degree > CONVERGING && half_s <= LONGEST_S / 2.0 && {
             let last = terms.last().map_or(0.0, added);
             libm::sqrt(left) <= LEFT_OF_LAST * last
         };
@@ -93,7 +101,7 @@ impl<const AXES: usize> PolynomialFit<AXES> {
             let is_told = smooth || order < 3;
             *derivative = if is_told { *derivative / scale } else { SVector::zeros() };
         }
-        Some(Self { degree, derivatives, deviation: libm::sqrt(variance * gain), left })
+        Some(Self { degree, derivatives, deviation: libm::sqrt(variance * gain), left, smooth })
     }
 
     /// The terms up to a degree, and the sum of squares that they leave.

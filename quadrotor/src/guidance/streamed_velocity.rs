@@ -13,8 +13,14 @@ const FASTEST_M_S2: f64 = 4.0 * GRAVITY_M_S2;
 
 /// Finds acceleration and jerk of a trajectory from its velocities, which somebody sets every so often. A velocity that is constant or
 /// jumps has none.
-#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StreamedVelocity(DerivativeEstimator<3>);
+
+impl Default for StreamedVelocity {
+    fn default() -> Self {
+        Self(DerivativeEstimator::of_rate())
+    }
+}
 
 impl StreamedVelocity {
     /// The velocity at `time_us`, m/s.

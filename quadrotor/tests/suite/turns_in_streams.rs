@@ -1,9 +1,12 @@
 //! Velocities that begin, end and reverse in a stream, smoothly and near the limits, and whose acceleration nobody tells.
 
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::SeedableRng;
 use nalgebra::Vector3;
 use quadrotor::{AirframePreset, Configuration, ControllerKind, Inputs, PositionReference, Simulation};
+use rand_distr::{Distribution, StandardNormal};
 
-use crate::common::{KINDS, quintic};
+use crate::common::{KINDS, fly, quintic};
 
 /// When the turn begins, s: the vehicle flies evenly by then.
 const TURN_S: f64 = 6.0;
@@ -93,4 +96,54 @@ fn turns_are_followed() {
         assert!(planned_m < most_m, "{told}");
         assert!(planned_m < 2.2 * free_m.min(regulated_m), "{told}");
     }
+}
+
+/// Positions alone, ten a second, of a quintic to a place: its end comes without notice. What its last samples tell of jerk and snap had been
+/// carried on past it, and flung the vehicle 2.9 m away.
+#[test]
+fn places_that_end_without_notice_are_reached() {
+    for kind in KINDS {
+        let mut configuration = Configuration::default();
+        configuration.reference.shaping = false;
+        configuration.controllers.kind = kind;
+        let place_m = |time_us: u64| 2.0 * quintic(time_us as f64 * 1e-6 - 1.0, 2.0)[0];
+        let inputs = |time_us: u64| Inputs {
+            reference: PositionReference::goal([place_m(time_us / 100_000 * 100_000), 0.0, 0.0], 0.0),
+            ..Inputs::default()
+        };
+        let mut farthest_m = 0.0_f64;
+        fly(&configuration, &inputs, 12.0, |outputs| {
+            farthest_m = farthest_m.max((outputs.position_m.x - place_m(outputs.time_us)).abs());
+        });
+        // It is known after half a second, by when it is 0.2 m away.
+        let most_m = if kind == ControllerKind::Dlqr { 2.0 } else { 1.0 };
+        assert!(farthest_m < most_m, "{kind:?}: {farthest_m} m");
+    }
+}
+
+/// Positions and velocities with noise of 0.5 mm and 1 mm/s, a hundred a second: derivatives that are found from them swing beyond the limits, and
+/// are neither a way to be narrowed nor turns to be followed.
+#[test]
+fn noise_in_a_stream_is_no_way_beyond_the_limits() {
+    let turn = Turn { from_m_s: 0.0, to_m_s: 3.0, duration_s: 2.345, rate_hz: 100 };
+    let noise: Vec<[f64; 2]> = {
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+        (0..1_400).map(|_| [5e-4 * normal(), 1e-3 * normal()]).collect()
+    };
+    let inputs = |time_us: u64| {
+        let mut inputs = turn.inputs(time_us);
+        let [position_m, velocity_m_s] = noise[(time_us / 10_000) as usize];
+        inputs.reference.position_m.x += position_m;
+        inputs.reference.velocity_m_s.x += velocity_m_s;
+        inputs
+    };
+    let mut configuration = Configuration::for_airframe(&AirframePreset::Crazyflie.airframe()).unwrap();
+    configuration.reference.shaping = false;
+    configuration.initial.position_m = [0.0, 0.0, -5.0];
+    let mut farthest_m = 0.0_f64;
+    fly(&configuration, &inputs, 13.9, |outputs| {
+        farthest_m = farthest_m.max((outputs.position_m.x - turn.at(outputs.time_us as f64 * 1e-6)[0]).abs());
+    });
+    assert!(farthest_m < 0.25, "{farthest_m} m");
 }
