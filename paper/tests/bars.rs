@@ -196,6 +196,17 @@ fn a_path_far_beyond_the_limits_is_no_worse_than_hovering() {
     assert_eq!(flights, 3 * 16);
 }
 
+/// A path that an airframe begins at rest, within a limit of the tilt, rad, and 20 m/s.
+fn begun_at_rest(preset: AirframePreset, path: Path, tilt_rad: f64) -> Plan {
+    let mut configuration = Configuration::for_airframe(&preset.airframe()).unwrap();
+    configuration.reference.shaping = false;
+    let limits = &mut configuration.limits;
+    (limits.tilt_rad, limits.speed_horizontal_m_s) = (tilt_rad, 20.0);
+    configuration.initial.position_m = path.derivative(0.0, 0).into();
+    let (demand, name) = (Demand::Path(path), format!("{preset:?} {path:?}"));
+    Plan { configuration, demand, name, ..plan("figure-eight of 6 m at 0.7 rad/s").clone() }
+}
+
 /// Paths that are begun at rest, with limits of 0.7 to 1.1 rad and 20 m/s, on which a plan had been lost for ever where the regulator was not: a circle
 /// beyond the limits whose way was given up before it was near, with no room left to return to it, and climbs that were foreseen to take more
 /// thrust than there is.
@@ -209,15 +220,7 @@ fn wide_limits_lose_no_path_that_the_regulator_keeps() {
         (Iris, Shape::UprightEight, 0.19, 4.02, 0.6),
         (Paper, Shape::UprightEight, 0.522, 4.37, 0.6),
     ] {
-        let mut configuration = Configuration::for_airframe(&preset.airframe()).unwrap();
-        configuration.reference.shaping = false;
-        let limits = &mut configuration.limits;
-        (limits.tilt_rad, limits.speed_horizontal_m_s) = (tilt_rad, 20.0);
-        let path = Path { shape, size_m, rate_rad_s };
-        configuration.initial.position_m = path.derivative(0.0, 0).into();
-        let (demand, name) = (Demand::Path(path), format!("{preset:?} {path:?}"));
-        let of = plan("figure-eight of 6 m at 0.7 rad/s");
-        let plan = Plan { configuration, demand, name, ..of.clone() };
+        let plan = begun_at_rest(preset, Path { shape, size_m, rate_rad_s }, tilt_rad);
         let [ours_m, regulated_m] = [Flyer::LaguerreMpc, Flyer::Regulator].map(|flyer| {
             let track = fly(&plan, flyer).unwrap();
             rms(track.last(20.0), |moment| moment.error_m().norm())
@@ -231,14 +234,7 @@ fn wide_limits_lose_no_path_that_the_regulator_keeps() {
 fn small_and_fast_swings_lead_nobody_far_away() {
     for (size_m, rate_rad_s) in [(0.45, 5.0), (0.5, 4.37), (0.522, 4.2), (0.55, 4.6), (0.6, 4.37)] {
         let path = Path { shape: Shape::UprightEight, size_m, rate_rad_s };
-        let mut configuration = Configuration::default();
-        configuration.reference.shaping = false;
-        let limits = &mut configuration.limits;
-        (limits.tilt_rad, limits.speed_horizontal_m_s) = (0.6, 20.0);
-        configuration.initial.position_m = path.derivative(0.0, 0).into();
-        let of = plan("figure-eight of 6 m at 0.7 rad/s");
-        let plan =
-            Plan { configuration, demand: Demand::Path(path), name: format!("{path:?}"), ..of.clone() };
+        let plan = begun_at_rest(AirframePreset::Paper, path, 0.6);
         let track = fly(&plan, Flyer::LaguerreMpc).unwrap();
         let farthest_m = track.moments.iter().map(|moment| moment.error_m().norm()).fold(0.0, f64::max);
         assert!(farthest_m < 4.0, "{path:?}: {farthest_m} m");

@@ -107,8 +107,9 @@ pub fn laguerre(
         None => axis.linear.limits.clone(),
         Some(samples) => {
             let limits = &axis.linear.limits;
-            let same =
-                |one: &SignalLimit, other: &SignalLimit| one.state == other.state && one.input == other.input;
+            let same = |one: &SignalLimit, other: &SignalLimit| {
+                (&one.state, &one.input, &one.directions) == (&other.state, &other.input, &other.directions)
+            };
             // Of the limits that one signal has at different samples, the last is enough everywhere.
             let placed = |(place, limit): (usize, &SignalLimit)| {
                 let is_last = !limits[place + 1..].iter().any(|later| same(limit, later));

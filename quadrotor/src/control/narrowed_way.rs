@@ -114,10 +114,12 @@ impl Narrowing {
     fn after(&self, (asked, is_told): (Vector2<f64>, bool), time_us: u64) -> Self {
         let t = (time_us.saturating_sub(self.time_us) as f64 / 1e6).min(STEP_S);
         let asked = self.asked.zip_map(&asked, |before, now| {
-            let rate_1_s = match now > before {
-                true if is_told => noticed_1_s(now / before),
-                true => NOTICED_1_S,
-                false => FORGOTTEN_1_S,
+            let rate_1_s = if now <= before {
+                FORGOTTEN_1_S
+            } else if is_told {
+                noticed_1_s(now / before)
+            } else {
+                NOTICED_1_S
             };
             before + (now - before) * (rate_1_s * t)
         });

@@ -192,14 +192,12 @@ pub(crate) fn position_bounds(
     let [most_m_s3, most_m_s4] =
         [limits.tilt_rate_rad_s, limits.tilt_acceleration_rad_s2].map(|limit| share * GRAVITY_M_S2 * limit);
     let (jerk_m_s3, snap_m_s4) = (asked.jerk_m_s3, asked.snap_m_s4);
-    let [leaning, turning] = if asked.is_bent {
-        // Beside a large lean, weak rotors have no torque to spare.
-        [with_room(most_m_s3, jerk_m_s3, TURNING_BACK), with_faster(most_m_s4, snap_m_s4)]
-    } else {
-        [with_faster(most_m_s3, jerk_m_s3), with_faster(most_m_s4, snap_m_s4)]
-    };
+    // Of the torque to turn with, weak rotors have none to spare beside a large lean.
+    let leaning =
+        if asked.is_bent { with_room(most_m_s3, jerk_m_s3) } else { with_faster(most_m_s3, jerk_m_s3) };
     let leaning = leaning.max(under_way.jerk_m_s3);
-    let turning = turning.max(under_way.snap_m_s4) + ANSWER_1_S * under_way.jump_m_s3;
+    let turning =
+        with_faster(most_m_s4, snap_m_s4).max(under_way.snap_m_s4) + ANSWER_1_S * under_way.jump_m_s3;
     // One far beyond the limits is not followed for long: see `NarrowedWay`.
     let is_far = jerk_m_s3 > FAR * most_m_s3 || snap_m_s4 > FAR * most_m_s4;
     let [leaning_before, turning_before] = if asked.is_bent || (asked.is_streamed && is_far) {
@@ -268,9 +266,9 @@ pub(crate) fn most_speed_m_s(limit_m_s: f64, asked_m_s: f64) -> f64 {
     limit_m_s.max(asked_m_s + catching_up_m_s(limit_m_s, asked_m_s))
 }
 
-/// A limit, or as much more than a reference asks for as feedback needs beside it, as a share of the limit.
-fn with_room(limit: f64, asked: f64, share: f64) -> f64 {
-    limit.max(asked + share * limit)
+/// A limit, or as much more than a reference asks for as feedback needs beside it.
+fn with_room(limit: f64, asked: f64) -> f64 {
+    limit.max(asked + TURNING_BACK * limit)
 }
 
 /// A limit, or a little more than a reference that asks for more than it.

@@ -3,10 +3,10 @@
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::SeedableRng;
 use nalgebra::Vector3;
-use quadrotor::{AirframePreset, Configuration, ControllerKind, Inputs, PositionReference, Simulation};
+use quadrotor::{AirframePreset, Configuration, ControllerKind, Inputs, Outputs, PositionReference};
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::common::{KINDS, fly, quintic};
+use crate::common::{KINDS, fly, quintic, unshaped_by};
 
 /// When the turn begins, s: the vehicle flies evenly by then.
 const TURN_S: f64 = 6.0;
@@ -48,17 +48,18 @@ impl Turn {
         configuration.reference.shaping = false;
         configuration.controllers.kind = kind;
         configuration.initial.position_m = [0.0, 0.0, -5.0];
-        let inputs = |time_us: u64| self.inputs(time_us);
-        let mut simulation = Simulation::new(&configuration, &inputs(0)).unwrap();
         let mut farthest_m = 0.0_f64;
-        for time_us in (10_000..14_000_000).step_by(10_000) {
-            simulation.advance_to(time_us, &inputs).unwrap();
-            let time_s = time_us as f64 * 1e-6;
-            if time_s > TURN_S {
-                farthest_m = farthest_m.max((simulation.outputs().position_m.x - self.at(time_s)[0]).abs());
+        fly(&configuration, &|time_us: u64| self.inputs(time_us), 14.0, |outputs| {
+            if outputs.time_us as f64 * 1e-6 > TURN_S {
+                farthest_m = farthest_m.max(self.off_m(outputs));
             }
-        }
+        });
         farthest_m
+    }
+
+    /// How far a vehicle is off the line's place, m.
+    fn off_m(&self, outputs: &Outputs) -> f64 {
+        (outputs.position_m.x - self.at(outputs.time_us as f64 * 1e-6)[0]).abs()
     }
 }
 
@@ -103,9 +104,7 @@ fn turns_are_followed() {
 #[test]
 fn places_that_end_without_notice_are_reached() {
     for kind in KINDS {
-        let mut configuration = Configuration::default();
-        configuration.reference.shaping = false;
-        configuration.controllers.kind = kind;
+        let configuration = unshaped_by(kind, false);
         let place_m = |time_us: u64| 2.0 * quintic(time_us as f64 * 1e-6 - 1.0, 2.0)[0];
         let inputs = |time_us: u64| Inputs {
             reference: PositionReference::goal([place_m(time_us / 100_000 * 100_000), 0.0, 0.0], 0.0),
@@ -143,7 +142,7 @@ fn noise_in_a_stream_is_no_way_beyond_the_limits() {
     configuration.initial.position_m = [0.0, 0.0, -5.0];
     let mut farthest_m = 0.0_f64;
     fly(&configuration, &inputs, 13.9, |outputs| {
-        farthest_m = farthest_m.max((outputs.position_m.x - turn.at(outputs.time_us as f64 * 1e-6)[0]).abs());
+        farthest_m = farthest_m.max(turn.off_m(outputs));
     });
     assert!(farthest_m < 0.25, "{farthest_m} m");
 }
